@@ -1,0 +1,33 @@
+//! Colour science without pictures.
+//!
+//! Tristimulus values, white points, spectra and the standard observer, correlated colour temperature,
+//! chromatic adaptation, colour differences, RGB spaces and their transfer curves. Everything is `f64`, pure
+//! and free of state.
+//!
+//! **What it does not do:** it knows no picture, no camera and no file.
+//!
+//! Conventions: XYZ is relative, with Y = 1 for the white; a matrix is applied to column vectors; wavelengths
+//! are in nanometres.
+
+pub mod xyz;
+pub use xyz::{Lab, Xy, Xyz};
+
+pub mod white;
+
+pub mod adaptation;
+pub mod difference;
+pub mod temperature;
+
+pub mod space;
+pub use space::{RgbSpace, TransferCurve};
+
+pub mod spectrum;
+pub use spectrum::Spectrum;
+
+mod tables;
+
+/// A 3x3 matrix applied to column vectors.
+pub type Matrix3 = nalgebra::Matrix3<f64>;
+
+/// A column of three numbers (an XYZ, an RGB) for use with [`Matrix3`].
+pub type Vector3 = nalgebra::Vector3<f64>;

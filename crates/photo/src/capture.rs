@@ -1,0 +1,107 @@
+//! A decoded raw file: everything known about one exposure.
+
+use colour::{Matrix3, Xy};
+
+use crate::{BlackLevel, Correction, Counts, Metadata, Orientation, Rect, WhiteLevel};
+
+/// Which camera took the picture.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Camera {
+    /// Maker as written in the file; may be empty.
+    pub make: String,
+    /// Model as written in the file; may be empty.
+    pub model: String,
+    /// The maker's common name ("Nikon" for "NIKON CORPORATION").
+    pub common_make: String,
+    /// The model's common name, without the maker ("D700" for "NIKON D700").
+    pub common_model: String,
+}
+
+impl Camera {
+    /// Common name of the camera, "Nikon D700"; "an unknown camera" when the file does not say.
+    pub fn name(&self) -> String {
+        match (self.common_make.is_empty(), self.common_model.is_empty()) {
+            (true, true) => "an unknown camera".to_owned(),
+            (true, false) => self.common_model.clone(),
+            (false, true) => self.common_make.clone(),
+            (false, false) => format!("{} {}", self.common_make, self.common_model),
+        }
+    }
+}
+
+/// What the file says of the white of the light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AsShot {
+    /// Camera RGB of a neutral surface, largest value not more than 1 by custom (DNG AsShotNeutral; the
+    /// reciprocal of multipliers).
+    Neutral([f64; 3]),
+    /// Chromaticity of the white (DNG AsShotWhiteXY).
+    White(Xy),
+}
+
+/// The maker's colour calibration for one light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// Correlated colour temperature of the light, K; `None` when the file names no light.
+    pub kelvin: Option<f64>,
+    /// XYZ to camera RGB (DNG ColorMatrix).
+    pub color_matrix: Matrix3,
+    /// Balanced camera RGB to XYZ under D50 (DNG ForwardMatrix).
+    pub forward_matrix: Option<Matrix3>,
+    /// Reference camera RGB to that of this specimen (DNG CameraCalibration).
+    pub camera_calibration: Option<Matrix3>,
+}
+
+/// How the file was stored and who decoded it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// Container, "NEF", "DNG", ...
+    pub format: String,
+    /// Compression in words.
+    pub compression: String,
+    /// Bits a stored sample.
+    pub bits: u8,
+    /// Decoder that was used, with its version.
+    pub decoder: String,
+}
+
+/// One exposure as decoded. Rectangles and black levels count from the first stored sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Capture {
+    /// The camera.
+    pub camera: Camera,
+    /// The samples.
+    pub counts: Counts,
+    /// Where light falls on the sensor.
+    pub active_area: Rect,
+    /// What the maker shows, inside the active area.
+    pub default_crop: Rect,
+    /// How to turn the picture upright.
+    pub orientation: Orientation,
+    /// Width of a pixel over its height; 1 for nearly every camera.
+    pub pixel_aspect: f64,
+    /// Stored value of no light.
+    pub black: BlackLevel,
+    /// Stored value of saturation.
+    pub white: WhiteLevel,
+    /// White of the light; `None` when the file does not say.
+    pub as_shot: Option<AsShot>,
+    /// Whether the stored samples are white-balanced already.
+    pub balance_applied: bool,
+    /// The maker's matrices, none, one or several.
+    pub calibrations: Vec<Calibration>,
+    /// Gains that the camera applied before storing (DNG AnalogBalance).
+    pub analog_balance: [f64; 3],
+    /// Stops by which the maker brightens the picture (DNG BaselineExposure).
+    pub baseline_exposure: f64,
+    /// Corrections on linear samples before demosaicing (DNG OpcodeList2).
+    pub mosaic_corrections: Vec<Correction>,
+    /// Corrections on demosaiced camera RGB (DNG OpcodeList3).
+    pub picture_corrections: Vec<Correction>,
+    /// What the camera wrote about the shot.
+    pub metadata: Metadata,
+    /// How the file was stored.
+    pub source: Source,
+    /// What had to be assumed or left out, in words. Nothing is guessed in silence.
+    pub notes: Vec<String>,
+}
