@@ -1,0 +1,2 @@
+//! The program `darkroot`.
+fn main() {}
