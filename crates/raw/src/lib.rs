@@ -1,1 +1,80 @@
-//! To come.
+//! Bytes of a raw file to a [`Capture`]: the only part of Darkroot that meets hostile input.
+//!
+//! [`decode`] screens the container first ([`screen`]), so that no decoder sees a file whose directories loop
+//! or whose sizes are beyond the [`Limits`]. Then one of two decoders runs, behind a guard that turns a panic
+//! into an error: flashraw (default) or rawloader (older makers, cross-check).
+//!
+//! **What it does not do:** it opens no files, it corrects nothing but what the file's own OpcodeList1 asks for,
+//! and it never guesses in silence: what had to be assumed stands in [`Capture::notes`].
+
+use photo::Capture;
+
+pub mod error;
+pub use error::Error;
+
+pub mod limits;
+pub use limits::Limits;
+
+pub mod preview;
+pub use preview::{Preview, preview};
+
+pub mod samples;
+pub use samples::samples_hash;
+
+mod screen;
+mod tiff;
+
+mod flash;
+mod loader;
+
+mod exif;
+mod opcodes;
+
+/// Which library decodes the samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Decoder {
+    /// flashraw: every current format, exact on all known-truth fixtures.
+    #[default]
+    Flashraw,
+    /// rawloader: a second opinion for cameras up to about 2018. It dithers Nikon files slightly and is refused
+    /// where it is known to be wrong.
+    Rawloader,
+}
+
+/// Decodes a raw file.
+///
+/// The samples are as stored, after the file's linearisation table and DNG OpcodeList1; black and white level
+/// are facts beside them, not applied.
+///
+/// # Errors
+/// Anything wrong with the file, as one [`Error`] that says what and what to do. Never panics for input.
+pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture, Error> {
+    let container = screen::screen(bytes)?;
+    match decoder {
+        Decoder::Flashraw => guarded("flashraw", || flash::decode(bytes, &container, limits)),
+        Decoder::Rawloader => {
+            // Everything but the samples comes from flashraw's reading of the headers and our own.
+            let header = guarded("flashraw", || flash::header(bytes, &container, limits))?;
+            guarded("rawloader", || loader::decode(bytes, header, limits))
+        }
+    }
+}
+
+/// Reads everything but the samples: fast, for choosing a profile or listing files. The samples of the result
+/// are empty.
+///
+/// # Errors
+/// As [`decode`].
+pub fn header(bytes: &[u8], limits: &Limits) -> Result<Capture, Error> {
+    let container = screen::screen(bytes)?;
+    guarded("flashraw", || flash::header(bytes, &container, limits))
+}
+
+/// Runs a foreign decoder so that a panic inside it costs one file and no more.
+fn guarded<T>(decoder: &'static str, run: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(run))
+        .unwrap_or(Err(Error::DecoderFailed { decoder }))
+}
+
+#[cfg(test)]
+mod tests;

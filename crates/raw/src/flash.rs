@@ -1,0 +1,381 @@
+//! The default decoder: flashraw.
+
+use colour::{Matrix3, Xy};
+use flashraw::{
+    BlackLevel as FlashBlack, CfaColor, CfaPattern, ColorMatrices, ColorMatrix, CorruptionPolicy,
+    DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData, SampleFormat,
+    SensorLayout,
+};
+use photo::{
+    AsShot, BlackLevel, Calibration, Camera, Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Rect,
+    Size, Source, WhiteLevel,
+};
+
+use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
+use crate::{Error, Limits, exif, opcodes};
+
+/// What [`Source::decoder`] says.
+const NAME: &str = "flashraw 0.1.1";
+
+/// DNG / TIFF-EP tags of the filter array, and its index for green.
+const CFA_PATTERN: u16 = 0x828e;
+const CFA_PLANE_COLOR: u16 = 0xc616;
+const GREEN: u8 = 1;
+
+/// Decodes the whole file.
+pub(crate) fn decode(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Result<Capture, Error> {
+    if let Some(named) = name_colours(bytes, container) {
+        return named.restore(decode_named(&named.bytes, container, limits)?);
+    }
+    decode_named(bytes, container, limits)
+}
+
+fn decode_named(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Result<Capture, Error> {
+    let raw = open(bytes, limits)?;
+    let float = raw.frame_info().sample_format == SampleFormat::F32;
+    let frame = raw
+        .decode(DecodeOptions {
+            output: if float { OutputFormat::RawF32 } else { OutputFormat::RawU16 },
+            corruption_policy: CorruptionPolicy::Strict,
+            limits: flash_limits(limits),
+            ..DecodeOptions::default()
+        })
+        .map_err(|e| error(&e))?;
+    let mut capture = describe(bytes, container, raw.metadata(), raw.frame_info())?;
+    let layout = capture.counts.layout().clone();
+    let size = Size { width: frame.width as usize, height: frame.height as usize };
+    capture.black = black_level(&frame.black_level)?;
+    capture.notes.extend(opcode_notes(&frame));
+    capture.counts = match frame.data {
+        RawPixelData::U16(samples) => Counts::U16(whole(Mosaic { size, layout, samples })?),
+        RawPixelData::F32(samples) => Counts::F32(whole(Mosaic { size, layout, samples })?),
+        _ => return Err(Error::DecoderFailed { decoder: "flashraw" }),
+    };
+    Ok(capture)
+}
+
+/// Everything but the samples.
+pub(crate) fn header(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Result<Capture, Error> {
+    if let Some(named) = name_colours(bytes, container) {
+        return named.restore(header_named(&named.bytes, container, limits)?);
+    }
+    header_named(bytes, container, limits)
+}
+
+fn header_named(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Result<Capture, Error> {
+    let raw = open(bytes, limits)?;
+    describe(bytes, container, raw.metadata(), raw.frame_info())
+}
+
+/// A DNG whose filter array uses a colour that its CFAPlaneColor does not name. flashraw refuses it, although
+/// the samples are sound: it gets a copy in which that colour is called green, and the truth is restored after.
+struct NamedColours {
+    bytes: Vec<u8>,
+    pattern: Vec<u8>,
+    planes: usize,
+}
+
+fn name_colours(bytes: &[u8], container: &Container<'_>) -> Option<NamedColours> {
+    let tiff = container.tiff.as_ref().filter(|t| t.has(DNG_VERSION))?;
+    let planes = match tiff.byte_positions(CFA_PLANE_COLOR).len() {
+        0 => 3,
+        n => n,
+    };
+    let positions = tiff.byte_positions(CFA_PATTERN);
+    let pattern = bytes.get(positions.clone())?.to_vec();
+    if !pattern.iter().any(|&i| usize::from(i) >= planes) {
+        return None;
+    }
+    let mut bytes = bytes.to_vec();
+    for i in bytes.get_mut(positions)?.iter_mut().filter(|i| usize::from(**i) >= planes) {
+        *i = GREEN;
+    }
+    Some(NamedColours { bytes, pattern, planes })
+}
+
+impl NamedColours {
+    fn restore(&self, mut capture: Capture) -> Result<Capture, Error> {
+        let layout = match &mut capture.counts {
+            Counts::U16(m) => &mut m.layout,
+            Counts::F32(m) => &mut m.layout,
+        };
+        if let Layout::Cfa(cfa) = layout {
+            // The decoder gives the pattern from the first sample on, the file from the active area on.
+            let (x0, y0) = (capture.active_area.x % cfa.width(), capture.active_area.y % cfa.height());
+            let (width, height) = (cfa.width(), cfa.height());
+            let filters = (0..width * height).map(|i| {
+                let (x, y) = ((i % width + width - x0) % width, (i / width + height - y0) % height);
+                let unnamed = self.pattern.get(y * width + x).is_some_and(|&c| usize::from(c) >= self.planes);
+                if unnamed { Filter::Other('E') } else { cfa.at(i % width, i / width) }
+            });
+            *cfa = Cfa::new(width, filters.collect()).ok_or(Error::DecoderFailed { decoder: "flashraw" })?;
+        }
+        capture
+            .notes
+            .push("the filter array has a colour that the file does not name (shown as E)".to_owned());
+        Ok(capture)
+    }
+}
+
+/// What a flashraw error means to the person who has the file.
+pub(crate) fn error(e: &flashraw::Error) -> Error {
+    use flashraw::Error as E;
+    match e {
+        E::UnsupportedFormat(_) => Error::NotRaw { found: "its format is not known" },
+        E::UnsupportedCompression { compression, .. } => {
+            Error::Compression { compression: compression.clone(), decoder: "flashraw" }
+        }
+        E::CameraUnsupported { make, model, reason } => Error::Camera {
+            camera: format!("{make} {model}").trim().to_owned(),
+            detail: if reason.is_empty() { "not in its list".into() } else { reason.clone() },
+            decoder: "flashraw",
+        },
+        E::OutOfMemory(detail) | E::LimitExceeded(detail) => Error::TooLarge { detail: detail.clone() },
+        E::NotAvailable(detail) => Error::NoRawData { detail: detail.clone() },
+        E::InvalidMetadata(detail) if detail.contains("no raw") => {
+            Error::NoRawData { detail: detail.clone() }
+        }
+        other => {
+            let detail = other.to_string();
+            let detail = detail.strip_prefix("corrupt file: ").unwrap_or(&detail);
+            Error::Damaged { detail: detail.to_owned() }
+        }
+    }
+}
+
+fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<FlashRaw<'a>, Error> {
+    FlashRaw::open_with(bytes, flash_limits(limits)).map_err(|e| error(&e))
+}
+
+fn flash_limits(limits: &Limits) -> flashraw::Limits {
+    flashraw::Limits::default().with_max_samples(limits.max_samples).with_max_dimension(limits.max_side)
+}
+
+/// A mosaic whose sample count fits its size; a decoder that breaks this promise is not trusted further.
+fn whole<T>(mosaic: Mosaic<T>) -> Result<Mosaic<T>, Error> {
+    let expected = mosaic.size.area() * mosaic.layout.planes();
+    if mosaic.samples.len() == expected && expected > 0 {
+        Ok(mosaic)
+    } else {
+        Err(Error::DecoderFailed { decoder: "flashraw" })
+    }
+}
+
+/// The capture of these headers, with no samples yet.
+fn describe(
+    bytes: &[u8],
+    container: &Container<'_>,
+    meta: &RawMetadata,
+    info: &FrameInfo,
+) -> Result<Capture, Error> {
+    let mut notes = Vec::new();
+    let size = Size { width: info.width as usize, height: info.height as usize };
+    let layout = layout(info)?;
+    let tiff = container.tiff.as_ref();
+    let is_dng = tiff.is_some_and(|t| t.has(DNG_VERSION));
+    if is_dng && !tiff.is_some_and(|t| t.has(WHITE_LEVEL)) {
+        notes.push(format!("the file names no white level; {} is assumed", info.white_level.max()));
+    }
+    let white = white_level(info, &layout);
+    let (calibrations, analog_balance) = calibrations(&info.color_matrices);
+    let as_shot = as_shot(meta, info);
+    let no_light = as_shot.is_none() && !info.white_balance_applied && layout.planes() == 1;
+    if no_light && layout != Layout::Monochrome {
+        notes.push("the file records no white balance".to_owned());
+    }
+    let (mut mosaic_corrections, mut picture_corrections) = (Vec::new(), Vec::new());
+    if let Some(opcodes) = &info.opcodes {
+        mosaic_corrections = opcodes::parse(&opcodes.lists[1], "OpcodeList2", &mut notes);
+        picture_corrections = opcodes::parse(&opcodes.lists[2], "OpcodeList3", &mut notes);
+    }
+    let mut metadata = exif::read(bytes, container, meta);
+    exif::complete(&mut metadata, meta);
+    Ok(Capture {
+        camera: camera(meta),
+        counts: Counts::U16(Mosaic { size, layout, samples: Vec::new() }),
+        active_area: rect(info.active_area, size),
+        default_crop: rect(info.crop, size),
+        orientation: Orientation::from_exif(info.orientation.exif()),
+        pixel_aspect: pixel_aspect(meta, info),
+        black: black_level(&info.black_level)?,
+        white,
+        as_shot,
+        balance_applied: info.white_balance_applied,
+        calibrations,
+        analog_balance,
+        baseline_exposure: meta
+            .dng
+            .as_ref()
+            .and_then(|d| d.baseline_exposure)
+            .unwrap_or(0.0)
+            .clamp(-10.0, 10.0),
+        mosaic_corrections,
+        picture_corrections,
+        metadata,
+        source: Source {
+            format: meta.format.map_or("raw", |f| f.name()).to_owned(),
+            compression: compression_name(info),
+            bits: info.bits_per_sample,
+            decoder: NAME.to_owned(),
+        },
+        notes,
+    })
+}
+
+fn camera(meta: &RawMetadata) -> Camera {
+    let common = |canonical: &str, written: &str| {
+        let name = if canonical.trim().is_empty() { written } else { canonical };
+        name.trim().to_owned()
+    };
+    let make = common(&meta.canonical_make, &meta.make);
+    let model = common(&meta.canonical_model, &meta.model);
+    // Some cameras repeat the maker in the model.
+    let common_model = match model.split_once(' ') {
+        Some((first, rest)) if !make.is_empty() && first.eq_ignore_ascii_case(&make) => rest.to_owned(),
+        _ => model,
+    };
+    Camera {
+        make: meta.make.trim().to_owned(),
+        model: meta.model.trim().to_owned(),
+        common_make: make,
+        common_model,
+    }
+}
+
+fn layout(info: &FrameInfo) -> Result<Layout, Error> {
+    match (info.cpp, &info.cfa) {
+        (1, Some(cfa)) => Ok(Layout::Cfa(filters(cfa)?)),
+        (1, None) => Ok(Layout::Monochrome),
+        (3, _) => Ok(Layout::Rgb),
+        (planes, _) => Err(Error::Camera {
+            camera: "this camera".into(),
+            detail: format!("{planes} samples a pixel in the layout {:?}", info.layout),
+            decoder: "flashraw",
+        }),
+    }
+}
+
+fn filters(cfa: &CfaPattern) -> Result<Cfa, Error> {
+    let filters = cfa
+        .colors()
+        .into_iter()
+        .map(|c| match c {
+            CfaColor::Red => Filter::Red,
+            CfaColor::Green => Filter::Green,
+            CfaColor::Blue => Filter::Blue,
+            other => Filter::Other(other.letter()),
+        })
+        .collect();
+    Cfa::new(cfa.width(), filters).ok_or(Error::DecoderFailed { decoder: "flashraw" })
+}
+
+fn rect(r: flashraw::Rect, size: Size) -> Rect {
+    let r = Rect { x: r.x as usize, y: r.y as usize, width: r.width as usize, height: r.height as usize };
+    r.intersection(Rect::full(size)).unwrap_or(Rect::full(size))
+}
+
+/// Width of a pixel over its height, from DNG DefaultScale where there is one. Linear pictures keep theirs.
+fn pixel_aspect(meta: &RawMetadata, info: &FrameInfo) -> f64 {
+    let scale = meta.dng.as_ref().and_then(|d| d.default_scale);
+    let aspect = scale.map_or(f64::from(info.pixel_aspect), |(h, v)| h / v);
+    if aspect.is_finite() && (0.25..=4.0).contains(&aspect) { aspect } else { 1.0 }
+}
+
+fn black_level(black: &FlashBlack) -> Result<BlackLevel, Error> {
+    let (rows, columns) = (usize::from(black.rows.max(1)), usize::from(black.cols.max(1)));
+    let planes = usize::from(black.samples.max(1));
+    let finite = black.values.iter().chain(&black.row_deltas).chain(&black.col_deltas).all(|v| v.is_finite());
+    if !finite {
+        return Err(Error::Damaged { detail: "its black level is not a number".into() });
+    }
+    let mut values = black.values.clone();
+    values.resize(rows * columns * planes, values.last().copied().unwrap_or(0.0));
+    Ok(BlackLevel {
+        columns,
+        rows,
+        planes,
+        values,
+        row_deltas: black.row_deltas.clone(),
+        column_deltas: black.col_deltas.clone(),
+    })
+}
+
+/// White level for red, green and blue; monochrome has one for all.
+fn white_level(info: &FrameInfo, layout: &Layout) -> WhiteLevel {
+    let plane = |i: usize| if *layout == Layout::Monochrome { 0 } else { i };
+    WhiteLevel([0, 1, 2].map(|i| info.white_level.at(plane(i)) as f32))
+}
+
+fn as_shot(meta: &RawMetadata, info: &FrameInfo) -> Option<AsShot> {
+    let usable = |n: [f64; 3]| n.iter().all(|&v| v.is_finite() && v > 1e-4 && v < 1e4).then_some(n);
+    let dng = meta.dng.as_ref();
+    let neutral = dng.and_then(|d| d.as_shot_neutral.as_deref()).and_then(|n| <[f64; 3]>::try_from(n).ok());
+    if let Some(neutral) = neutral.and_then(usable) {
+        return Some(AsShot::Neutral(neutral));
+    }
+    if let Some((x, y)) = dng.and_then(|d| d.as_shot_white_xy)
+        && x > 0.0
+        && y > 0.0
+        && x + y < 1.0
+    {
+        return Some(AsShot::White(Xy::new(x, y)));
+    }
+    let [r, g, b, _] = info.white_balance?.coeffs.map(f64::from);
+    usable([1.0 / r, 1.0 / g, 1.0 / b]).map(AsShot::Neutral)
+}
+
+/// The calibrations and the analog balance of three-colour sensors.
+fn calibrations(matrices: &ColorMatrices) -> (Vec<Calibration>, [f64; 3]) {
+    let paired = |list: &[ColorMatrix], i: usize, of: &ColorMatrix| {
+        let by_light = list.iter().find(|m| m.illuminant == of.illuminant && m.illuminant.0 != 0);
+        by_light.or_else(|| list.get(i).filter(|_| list.len() == matrices.color.len())).and_then(matrix)
+    };
+    let calibrations = matrices
+        .color
+        .iter()
+        .enumerate()
+        .filter_map(|(i, m)| {
+            Some(Calibration {
+                kelvin: m.illuminant.temperature().map(f64::from),
+                color_matrix: matrix(m).filter(|m| m.try_inverse().is_some())?,
+                forward_matrix: paired(&matrices.forward, i, m).filter(|m| m.try_inverse().is_some()),
+                camera_calibration: paired(&matrices.calibration, i, m).filter(|m| m.try_inverse().is_some()),
+            })
+        })
+        .collect();
+    let analog = match matrices.analog_balance[..] {
+        [r, g, b] if [r, g, b].iter().all(|&v| v.is_finite() && v > 0.0) => [r, g, b].map(f64::from),
+        _ => [1.0; 3],
+    };
+    (calibrations, analog)
+}
+
+fn matrix(m: &ColorMatrix) -> Option<Matrix3> {
+    (m.rows == 3 && m.values.len() == 9 && m.values.iter().all(|v| v.is_finite()))
+        .then(|| Matrix3::from_row_iterator(m.values.iter().map(|&v| f64::from(v))))
+}
+
+/// What flashraw says of OpcodeList1, which it applies itself: only what it left out.
+fn opcode_notes(frame: &RawFrame) -> Vec<String> {
+    let first = frame.stats.opcodes.iter().filter(|n| n.starts_with("OpcodeList1: not applied"));
+    first.cloned().collect()
+}
+
+fn compression_name(info: &FrameInfo) -> String {
+    use flashraw::Compression as C;
+    match info.compression {
+        C::Uncompressed => "uncompressed".into(),
+        C::LosslessJpeg => "lossless JPEG".into(),
+        C::LossyJpeg => "lossy JPEG".into(),
+        C::Deflate => "deflate".into(),
+        C::JpegXl => "JPEG XL".into(),
+        C::NikonHuffman => "Nikon Huffman".into(),
+        C::NikonHighEfficiency => "Nikon High Efficiency".into(),
+        other => format!("{other:?}"),
+    }
+    .to_owned()
+        + match info.layout {
+            SensorLayout::Foveon => ", Foveon layers",
+            _ => "",
+        }
+}

@@ -1,0 +1,205 @@
+//! DNG opcode lists 2 and 3 as corrections (DNG 1.7, chapter 7). Numbers in them are big-endian.
+
+use photo::Rect;
+use photo::correction::{Area, Correction, GainMap, Vignette, Warp};
+
+/// Flag bit: a reader that does not know the opcode may skip it.
+const OPTIONAL: u32 = 1;
+/// Largest number of opcodes that is taken seriously.
+const MAX_OPCODES: u32 = 4096;
+
+/// Parses a list. What cannot be applied is named in `notes`.
+pub(crate) fn parse(list: &[u8], name: &str, notes: &mut Vec<String>) -> Vec<Correction> {
+    let mut corrections = Vec::new();
+    let mut bytes = Reader(list);
+    let count = bytes.u32().unwrap_or(0).min(MAX_OPCODES);
+    for _ in 0..count {
+        let header = (bytes.u32(), bytes.u32(), bytes.u32(), bytes.u32());
+        let (Some(id), Some(_version), Some(flags), Some(length)) = header else {
+            notes.push(format!("{name} is cut short; the rest of it is not applied"));
+            break;
+        };
+        let Some(body) = bytes.take(length as usize) else {
+            notes.push(format!("{name} is cut short; the rest of it is not applied"));
+            break;
+        };
+        match correction(id, &mut Reader(body)) {
+            Some(correction) => corrections.push(correction),
+            None => {
+                let weight = if flags & OPTIONAL != 0 { "optional" } else { "mandatory" };
+                notes.push(format!("{name}: the {weight} correction {} is not applied", opcode_name(id)));
+            }
+        }
+    }
+    corrections
+}
+
+fn opcode_name(id: u32) -> String {
+    match id {
+        1 => "WarpRectilinear".into(),
+        2 => "WarpFisheye".into(),
+        3 => "FixVignetteRadial".into(),
+        4 => "FixBadPixelsConstant".into(),
+        5 => "FixBadPixelsList".into(),
+        6 => "TrimBounds".into(),
+        14 => "WarpRectilinear2".into(),
+        other => format!("number {other}"),
+    }
+}
+
+fn correction(id: u32, body: &mut Reader<'_>) -> Option<Correction> {
+    Some(match id {
+        1 => {
+            let planes = (0..body.u32()?.min(4)).map(|_| body.f64s()).collect::<Option<Vec<[f64; 6]>>>()?;
+            Correction::Warp(Warp { planes, centre: (body.f64()?, body.f64()?) })
+        }
+        3 => {
+            Correction::Vignette(Vignette { coefficients: body.f64s()?, centre: (body.f64()?, body.f64()?) })
+        }
+        7 => {
+            let area = body.area()?;
+            let count = body.u32()?;
+            Correction::Table(area, (0..count).map(|_| body.u16()).collect::<Option<Vec<_>>>()?)
+        }
+        8 => {
+            let area = body.area()?;
+            let degree = body.u32()?;
+            // The specification allows degrees up to 8.
+            if degree > 8 {
+                return None;
+            }
+            Correction::Polynomial(area, (0..=degree).map(|_| body.f64()).collect::<Option<Vec<_>>>()?)
+        }
+        9 => {
+            let area = body.area()?;
+            let (rows, columns) = (body.u32()? as usize, body.u32()? as usize);
+            let (spacing_v, spacing_h) = (body.f64()?, body.f64()?);
+            let (origin_v, origin_h) = (body.f64()?, body.f64()?);
+            let planes = body.u32()? as usize;
+            let count = rows.checked_mul(columns)?.checked_mul(planes)?;
+            if count == 0 || count.checked_mul(4)? > body.0.len() {
+                return None;
+            }
+            let gains = (0..count).map(|_| body.f32()).collect::<Option<Vec<_>>>()?;
+            let (vertical, horizontal) = ((origin_v, spacing_v), (origin_h, spacing_h));
+            Correction::Gain(area, GainMap { rows, columns, planes, vertical, horizontal, gains })
+        }
+        10..=13 => {
+            let area = body.area()?;
+            let count = body.u32()?;
+            let values = (0..count).map(|_| body.f32()).collect::<Option<Vec<_>>>()?;
+            match id {
+                10 => Correction::RowDelta(area, values),
+                11 => Correction::ColumnDelta(area, values),
+                12 => Correction::RowScale(area, values),
+                _ => Correction::ColumnScale(area, values),
+            }
+        }
+        _ => return None,
+    })
+}
+
+/// Big-endian reading that cannot run out of bounds; infinities and NaN count as damage.
+struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, n: usize) -> Option<&'a [u8]> {
+        let (head, tail) = self.0.split_at_checked(n)?;
+        self.0 = tail;
+        Some(head)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.take(N)?.try_into().ok()
+    }
+
+    fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_be_bytes)
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_be_bytes)
+    }
+
+    fn f32(&mut self) -> Option<f32> {
+        self.array().map(f32::from_be_bytes).filter(|v| v.is_finite())
+    }
+
+    fn f64(&mut self) -> Option<f64> {
+        self.array().map(f64::from_be_bytes).filter(|v| v.is_finite())
+    }
+
+    fn f64s<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut values = [0.0; N];
+        for v in &mut values {
+            *v = self.f64()?;
+        }
+        Some(values)
+    }
+
+    fn area(&mut self) -> Option<Area> {
+        let (top, left) = (self.u32()? as usize, self.u32()? as usize);
+        let (bottom, right) = (self.u32()? as usize, self.u32()? as usize);
+        let (plane, planes) = (self.u32()? as usize, self.u32()? as usize);
+        let (row_pitch, column_pitch) = (self.u32()? as usize, self.u32()? as usize);
+        let whole = bottom >= top && right >= left && row_pitch > 0 && column_pitch > 0 && planes > 0;
+        let rect =
+            Rect { x: left, y: top, width: right.checked_sub(left)?, height: bottom.checked_sub(top)? };
+        whole.then_some(Area { rect, plane, planes, row_pitch, column_pitch })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn list(opcodes: &[(u32, u32, Vec<u8>)]) -> Vec<u8> {
+        let mut bytes = (opcodes.len() as u32).to_be_bytes().to_vec();
+        for (id, flags, body) in opcodes {
+            for word in [*id, 0x0103_0000, *flags, body.len() as u32] {
+                bytes.extend(word.to_be_bytes());
+            }
+            bytes.extend(body);
+        }
+        bytes
+    }
+
+    fn area_bytes() -> Vec<u8> {
+        [0u32, 0, 10, 20, 1, 1, 1, 1].iter().flat_map(|v| v.to_be_bytes()).collect()
+    }
+
+    #[test]
+    fn a_polynomial_keeps_its_area_and_coefficients() {
+        let mut body = area_bytes();
+        body.extend(1u32.to_be_bytes());
+        body.extend(0.5f64.to_be_bytes());
+        body.extend(2.0f64.to_be_bytes());
+        let mut notes = Vec::new();
+        let parsed = parse(&list(&[(8, 0, body)]), "OpcodeList2", &mut notes);
+        let rect = Rect { x: 0, y: 0, width: 20, height: 10 };
+        let area = Area { rect, plane: 1, planes: 1, row_pitch: 1, column_pitch: 1 };
+        assert_eq!(parsed, vec![Correction::Polynomial(area, vec![0.5, 2.0])]);
+        assert!(notes.is_empty());
+    }
+
+    #[test]
+    fn an_unknown_opcode_is_named_and_the_rest_goes_on() {
+        let mut vignette: Vec<u8> = (0..5).flat_map(|_| 0f64.to_be_bytes()).collect();
+        vignette.extend(0.5f64.to_be_bytes());
+        vignette.extend(0.5f64.to_be_bytes());
+        let mut notes = Vec::new();
+        let parsed = parse(&list(&[(99, 0, vec![]), (3, 0, vignette)]), "OpcodeList3", &mut notes);
+        assert_eq!(parsed.len(), 1);
+        assert_eq!(notes, ["OpcodeList3: the mandatory correction number 99 is not applied"]);
+    }
+
+    #[test]
+    fn a_list_that_is_cut_short_says_so() {
+        let whole = list(&[(3, 0, vec![0; 56])]);
+        for length in 5..whole.len() {
+            let mut notes = Vec::new();
+            assert!(parse(&whole[..length], "OpcodeList3", &mut notes).is_empty());
+            assert_eq!(notes.len(), 1, "{length}");
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! The directories of a TIFF-based raw file, walked within bounds.
+//!
+//! Only what the screen and a few facts need: which tags there are, and small integer values. Decoders read the
+//! rest themselves.
+
+use std::collections::HashSet;
+
+use crate::Error;
+
+/// Tags whose values point to further directories.
+const SUB_IFDS: u16 = 0x014a;
+const EXIF_IFD: u16 = 0x8769;
+const GPS_IFD: u16 = 0x8825;
+
+/// No real raw file has more directories than this (bursts in one DNG have a few dozen).
+const MAX_DIRECTORIES: usize = 512;
+/// No real directory has more entries than this.
+const MAX_ENTRIES: usize = 4096;
+/// Directories inside directories: image, sub-image, Exif, interoperability.
+const MAX_DEPTH: usize = 8;
+
+/// One entry of a directory.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Entry {
+    pub(crate) tag: u16,
+    kind: u16,
+    count: u64,
+    /// Where the value stands in the file.
+    offset: usize,
+}
+
+/// One directory (IFD).
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Directory {
+    pub(crate) entries: Vec<Entry>,
+}
+
+/// All directories of a file, in the order met.
+#[derive(Debug, Clone)]
+pub(crate) struct Directories<'a> {
+    bytes: &'a [u8],
+    little_endian: bool,
+    big: bool,
+    pub(crate) all: Vec<Directory>,
+}
+
+impl<'a> Directories<'a> {
+    /// Walks the directories of a TIFF structure; `None` when the bytes have no TIFF header.
+    ///
+    /// # Errors
+    /// [`Error::Damaged`] when directories point at themselves or each other, are nested too deep or too many.
+    pub(crate) fn walk(bytes: &'a [u8]) -> Result<Option<Self>, Error> {
+        let (little_endian, big) = match bytes.get(..4) {
+            // Besides TIFF's 42 and BigTIFF's 43: Olympus (RO, RS) and Panasonic (U).
+            Some([b'I', b'I', 42, 0] | [b'I', b'I', b'R', b'O' | b'S'] | [b'I', b'I', b'U', 0]) => {
+                (true, false)
+            }
+            Some([b'M', b'M', 0, 42] | [b'M', b'M', b'O', b'R']) => (false, false),
+            Some([b'I', b'I', 43, 0]) => (true, true),
+            Some([b'M', b'M', 0, 43]) => (false, true),
+            _ => return Ok(None),
+        };
+        let mut walked = Self { bytes, little_endian, big, all: Vec::new() };
+        let first = if big { walked.word(8) } else { walked.word(4) };
+        if let Some(first) = first {
+            let mut seen = HashSet::new();
+            walked.chain(first, 0, &mut seen)?;
+        }
+        Ok(Some(walked))
+    }
+
+    /// Follows a chain of directories from `offset`.
+    fn chain(&mut self, mut offset: u64, depth: usize, seen: &mut HashSet<u64>) -> Result<(), Error> {
+        while offset != 0 {
+            if depth > MAX_DEPTH {
+                return Err(damaged("its directories are nested too deep"));
+            }
+            if !seen.insert(offset) {
+                return Err(damaged("its directories point back at each other"));
+            }
+            if self.all.len() >= MAX_DIRECTORIES {
+                return Err(damaged("it has too many directories"));
+            }
+            let Some((directory, next)) = self.directory(offset)? else {
+                // A chain that runs out of the file is common in truncated files and harmless in some whole
+                // ones; the decoder decides.
+                return Ok(());
+            };
+            let children: Vec<u64> = directory
+                .entries
+                .iter()
+                .filter(|e| matches!(e.tag, SUB_IFDS | EXIF_IFD | GPS_IFD))
+                .flat_map(|e| self.integers(e, MAX_DIRECTORIES))
+                .collect();
+            self.all.push(directory);
+            for child in children {
+                self.chain(child, depth + 1, seen)?;
+            }
+            offset = next;
+        }
+        Ok(())
+    }
+
+    /// The directory at `offset` and the offset of the next; `None` when it does not lie in the file.
+    fn directory(&self, offset: u64) -> Result<Option<(Directory, u64)>, Error> {
+        let Ok(start) = usize::try_from(offset) else { return Ok(None) };
+        let (head, size, inline) = if self.big { (8, 20, 8) } else { (2, 12, 4) };
+        let count = if self.big { self.long8(start) } else { self.short(start).map(u64::from) };
+        let Some(count) = count.and_then(|c| usize::try_from(c).ok()) else { return Ok(None) };
+        if count > MAX_ENTRIES {
+            return Err(damaged("one of its directories claims thousands of entries"));
+        }
+        let mut entries = Vec::with_capacity(count);
+        for i in 0..count {
+            let at = start + head + i * size;
+            let (Some(tag), Some(kind), Some(n)) = (
+                self.short(at),
+                self.short(at + 2),
+                if self.big { self.long8(at + 4) } else { self.long(at + 4).map(u64::from) },
+            ) else {
+                return Ok(None);
+            };
+            let value_at = at + 4 + inline;
+            let length = n.saturating_mul(size_of_kind(kind));
+            let offset = if length <= inline as u64 {
+                Some(value_at)
+            } else {
+                self.word(value_at).and_then(|o| usize::try_from(o).ok())
+            };
+            if let Some(offset) = offset {
+                entries.push(Entry { tag, kind, count: n, offset });
+            }
+        }
+        let next = self.word(start + head + count * size).unwrap_or(0);
+        Ok(Some((Directory { entries }, next)))
+    }
+
+    /// The first `limit` integers of an entry; fewer when the file ends before.
+    pub(crate) fn integers(&self, entry: &Entry, limit: usize) -> Vec<u64> {
+        let size = size_of_kind(entry.kind) as usize;
+        (0..entry.count.min(limit as u64) as usize)
+            .map_while(|i| {
+                let at = entry.offset.checked_add(i * size)?;
+                match entry.kind {
+                    1 | 7 => self.bytes.get(at).map(|&b| u64::from(b)),
+                    3 => self.short(at).map(u64::from),
+                    4 | 13 => self.long(at).map(u64::from),
+                    16 | 18 => self.long8(at),
+                    _ => None,
+                }
+            })
+            .collect()
+    }
+
+    /// Where the single bytes of the first entry with this tag stand in the file; empty for other types.
+    pub(crate) fn byte_positions(&self, tag: u16) -> std::ops::Range<usize> {
+        let entry =
+            self.all.iter().flat_map(|d| &d.entries).find(|e| e.tag == tag && matches!(e.kind, 1 | 7));
+        entry.map_or(0..0, |e| {
+            let end = e.offset.saturating_add(e.count.min(MAX_ENTRIES as u64) as usize);
+            e.offset.min(self.bytes.len())..end.min(self.bytes.len())
+        })
+    }
+
+    /// Whether any directory has the tag.
+    pub(crate) fn has(&self, tag: u16) -> bool {
+        self.all.iter().any(|d| d.entries.iter().any(|e| e.tag == tag))
+    }
+
+    fn array<const N: usize>(&self, at: usize) -> Option<[u8; N]> {
+        self.bytes.get(at..at.checked_add(N)?)?.try_into().ok()
+    }
+
+    fn short(&self, at: usize) -> Option<u16> {
+        let b = self.array(at)?;
+        Some(if self.little_endian { u16::from_le_bytes(b) } else { u16::from_be_bytes(b) })
+    }
+
+    fn long(&self, at: usize) -> Option<u32> {
+        let b = self.array(at)?;
+        Some(if self.little_endian { u32::from_le_bytes(b) } else { u32::from_be_bytes(b) })
+    }
+
+    fn long8(&self, at: usize) -> Option<u64> {
+        let b = self.array(at)?;
+        Some(if self.little_endian { u64::from_le_bytes(b) } else { u64::from_be_bytes(b) })
+    }
+
+    /// An offset in the size of this kind of TIFF.
+    fn word(&self, at: usize) -> Option<u64> {
+        if self.big { self.long8(at) } else { self.long(at).map(u64::from) }
+    }
+}
+
+/// Bytes of one value of a TIFF field type; 1 for unknown types.
+fn size_of_kind(kind: u16) -> u64 {
+    match kind {
+        3 | 8 => 2,
+        4 | 9 | 11 | 13 => 4,
+        5 | 10 | 12 | 16 | 17 | 18 => 8,
+        _ => 1,
+    }
+}
+
+fn damaged(detail: &str) -> Error {
+    Error::Damaged { detail: detail.to_owned() }
+}
