@@ -1,0 +1,148 @@
+//! A camera's profile: one model per light, and which one serves which white.
+
+use colour::Xy;
+use colour::temperature::Temperature;
+
+use crate::Model;
+
+/// The camera that a profile is for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProfileCamera {
+    /// Maker's common name ("Nikon").
+    pub make: String,
+    /// Model's common name, without the maker ("D700").
+    pub model: String,
+    /// Other names of the same camera, make and model in one ("NIKON CORPORATION NIKON D700").
+    pub aliases: Vec<String>,
+}
+
+impl ProfileCamera {
+    /// Whether this is the camera of that make and model; case and spaces do not matter.
+    pub fn is(&self, make: &str, model: &str) -> bool {
+        let plain = |s: &str| s.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect();
+        let asked: String = plain(&format!("{make}{model}"));
+        let own: String = plain(&format!("{}{}", self.make, self.model));
+        let alias = |a: &String| -> bool {
+            let alias: String = plain(a);
+            alias == asked
+        };
+        own == asked || self.aliases.iter().any(alias)
+    }
+
+    /// Make and model in one.
+    pub fn name(&self) -> String {
+        format!("{} {}", self.make, self.model).trim().to_owned()
+    }
+}
+
+/// The light of a calibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Light {
+    /// Its name ("D65", "A", "studio flash").
+    pub name: String,
+    /// Chromaticity of its white.
+    pub xy: Xy,
+}
+
+impl Light {
+    /// Correlated colour temperature, K.
+    pub fn kelvin(&self) -> f64 {
+        Temperature::of(self.xy).kelvin
+    }
+}
+
+/// What the camera's colours mean under one light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// The light.
+    pub light: Light,
+    /// Balanced camera RGB to XYZ relative to D50.
+    pub model: Model,
+}
+
+/// What one camera's colours mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    camera: ProfileCamera,
+    /// At least one, by falling temperature of the light (rising mired).
+    calibrations: Vec<Calibration>,
+    /// Where the profile came from, in words.
+    origin: String,
+}
+
+impl Profile {
+    /// A profile of these calibrations. `None` when there are none.
+    pub fn new(camera: ProfileCamera, mut calibrations: Vec<Calibration>, origin: String) -> Option<Self> {
+        calibrations.sort_by(|a, b| b.light.kelvin().total_cmp(&a.light.kelvin()));
+        (!calibrations.is_empty()).then_some(Self { camera, calibrations, origin })
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &ProfileCamera {
+        &self.camera
+    }
+
+    /// The calibrations, bluest light first.
+    pub fn calibrations(&self) -> &[Calibration] {
+        &self.calibrations
+    }
+
+    /// Where the profile came from, in words.
+    pub fn origin(&self) -> &str {
+        &self.origin
+    }
+
+    /// The model for a white of `kelvin`: between two lights by their mired (1e6 / K), beyond them the nearest.
+    pub fn model_for(&self, kelvin: f64) -> Model {
+        let mired = |c: &Calibration| 1e6 / c.light.kelvin();
+        let wanted = 1e6 / kelvin;
+        let first = &self.calibrations[0];
+        let mut previous = first;
+        for next in &self.calibrations {
+            if wanted <= mired(next) {
+                let span = mired(next) - mired(previous);
+                let weight = if span > 0.0 { (wanted - mired(previous)) / span } else { 1.0 };
+                return previous.model.mix(&next.model, weight.clamp(0.0, 1.0));
+            }
+            previous = next;
+        }
+        previous.model.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use colour::{Matrix3, white};
+
+    fn two_lights() -> Profile {
+        let camera =
+            ProfileCamera { make: "Nikon".into(), model: "D700".into(), aliases: vec!["NIKON D 700".into()] };
+        let calibration = |name: &str, xy, scale: f64| Calibration {
+            light: Light { name: name.into(), xy },
+            model: Model::linear(&(Matrix3::identity() * scale)),
+        };
+        let both = vec![calibration("A", white::A_XY, 1.0), calibration("D65", white::D65_XY, 3.0)];
+        Profile::new(camera, both, "a test".into()).unwrap()
+    }
+
+    #[test]
+    fn lights_interpolate_in_mired_and_clamp_beyond() {
+        let profile = two_lights();
+        let y = |kelvin: f64| profile.model_for(kelvin).xyz([1.0; 3]).y;
+        let lights: Vec<f64> = profile.calibrations().iter().map(|c| c.light.kelvin()).collect();
+        let middle = 2e6 / (1e6 / lights[0] + 1e6 / lights[1]);
+        assert!((y(20000.0) - 3.0).abs() < 1e-12);
+        assert!((y(lights[0]) - 3.0).abs() < 1e-9);
+        assert!((y(middle * 0.0 + 1e6 / ((1e6 / lights[0] + 1e6 / lights[1]) / 2.0)) - 2.0).abs() < 1e-9);
+        assert!((y(lights[1]) - 1.0).abs() < 1e-9);
+        assert!((y(2000.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_camera_is_known_by_its_names() {
+        let camera = two_lights().camera().clone();
+        assert!(camera.is("Nikon", "D700") && camera.is("NIKON", "d700"));
+        assert!(!camera.is("Nikon", "D70"));
+    }
+}
