@@ -1,1 +1,42 @@
-//! To come.
+//! Capture, profile and recipe to a picture.
+//!
+//! ```text
+//! plan    looks at the whole capture once: white, highlights, exposure
+//! render  cuts the picture into tiles and runs the stages over each, in parallel:
+//!         level -> corrections -> balance -> highlights -> demosaic -> corrections
+//!         -> correct (profile) -> exposure -> tone -> gamut -> transfer
+//! ```
+//!
+//! A stage is a function over a small picture in its own file; it neither knows nor cares whether that picture
+//! is a tile or the whole frame. The picture does not depend on the number of threads, on the tiles or on the
+//! machine: bit for bit the same.
+//!
+//! **What it does not do:** no files, no clock, no environment, no state.
+
+pub mod recipe;
+pub use recipe::{Balance, Bits, Crop, Demosaic, Exposure, Highlights, Look, Output, OutputSpace, Recipe};
+
+pub mod plan;
+pub use plan::{Colours, Error, Plan, plan};
+
+pub mod survey;
+pub use survey::{Survey, survey};
+
+pub mod white;
+pub use white::CameraMatrix;
+
+mod render;
+
+// The stages, in the order of the pipeline.
+pub mod balance;
+pub mod correct;
+pub mod corrections;
+pub mod demosaic;
+pub mod exposure;
+pub mod gamut;
+pub mod highlights;
+pub mod level;
+pub mod tone;
+pub mod transfer;
+
+mod tile;

@@ -115,6 +115,16 @@ impl Orientation {
         if self.swaps_axes() { Size { width: size.height, height: size.width } } else { size }
     }
 
+    /// The orientation that undoes this one.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        match self {
+            Self::Rotate90 => Self::Rotate270,
+            Self::Rotate270 => Self::Rotate90,
+            own_inverse => own_inverse,
+        }
+    }
+
     /// Where the pixel stored at (`x`, `y`) in a picture of `size` stands in the upright picture.
     pub fn place(self, x: usize, y: usize, size: Size) -> (usize, usize) {
         let (right, bottom) = (size.width - 1 - x, size.height - 1 - y);
@@ -153,6 +163,7 @@ mod tests {
             for y in 0..size.height {
                 for x in 0..size.width {
                     let (u, v) = orientation.place(x, y, size);
+                    assert_eq!(orientation.inverse().place(u, v, upright), (x, y));
                     seen[v * upright.width + u] = true;
                 }
             }

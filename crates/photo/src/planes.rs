@@ -12,7 +12,11 @@ pub enum Camera {}
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scene {}
 
-/// Linear light in the output's primaries, 0..=1.
+/// Rec. 2020 light as a display shall show it, 0..=1: a look has been applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Toned {}
+
+/// Linear light in the output's primaries: 0..=1 after a look, unbounded in the linear look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Display {}
 

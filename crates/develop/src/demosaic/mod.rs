@@ -1,0 +1,95 @@
+//! Demosaic: from one colour a pixel to three.
+//!
+//! Every method works on the signed square root of the balanced samples and squares its result: interpolation
+//! on linear light smears bright into dark, and the square root is nearly even for shot noise. Unlike a curve
+//! with a toe it is homogeneous, so twice the light still gives twice the picture.
+
+use photo::{CameraSpace, Layout, Mosaic, Rgb, Size};
+
+use crate::Demosaic;
+
+pub mod bilinear;
+pub mod lmmse;
+
+/// A demosaicing method for one sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Directional LMMSE, for Bayer.
+    Lmmse,
+    /// Weighted mean of the nearest samples of each colour, for any array.
+    Bilinear,
+    /// Nothing to interpolate: linear RGB or monochrome.
+    None,
+}
+
+impl Method {
+    /// The method for a sensor; `None` for filter arrays with other colours than red, green and blue.
+    pub fn of(layout: &Layout, wanted: Demosaic) -> Option<Self> {
+        match layout {
+            Layout::Rgb | Layout::Monochrome => Some(Self::None),
+            Layout::Cfa(cfa) if !cfa.is_rgb() => None,
+            Layout::Cfa(cfa) if cfa.is_bayer() && wanted == Demosaic::Best => Some(Self::Lmmse),
+            Layout::Cfa(_) => Some(Self::Bilinear),
+        }
+    }
+
+    /// Pixels around the result that the method looks at.
+    pub fn border(self) -> usize {
+        match self {
+            Self::Lmmse => lmmse::BORDER,
+            Self::Bilinear => bilinear::BORDER,
+            Self::None => 0,
+        }
+    }
+
+    /// Name and source, for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lmmse => "directional LMMSE (Zhang and Wu 2005)",
+            Self::Bilinear => "bilinear",
+            Self::None => "none",
+        }
+    }
+}
+
+/// Interpolates the inner part of a balanced mosaic: `border` pixels, at least [`Method::border`], are cut off
+/// on each side.
+pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize) -> Rgb<CameraSpace> {
+    let inner = Size { width: mosaic.size.width - 2 * border, height: mosaic.size.height - 2 * border };
+    let mut picture = Rgb::black(inner);
+    match (method, &mosaic.layout) {
+        (Method::Lmmse, Layout::Cfa(cfa)) => lmmse::demosaic(mosaic, cfa, border, &mut picture),
+        (_, Layout::Cfa(cfa)) => bilinear::demosaic(mosaic, cfa, border, &mut picture),
+        (_, layout) => split(mosaic, layout.planes(), border, &mut picture),
+    }
+    picture
+}
+
+/// Splits pixels of one or three samples into planes.
+fn split(mosaic: &Mosaic<f32>, planes: usize, border: usize, picture: &mut Rgb<CameraSpace>) {
+    let Size { width, height } = picture.size();
+    for (c, plane) in picture.planes_mut().into_iter().enumerate() {
+        for y in 0..height {
+            let start = ((y + border) * mosaic.size.width + border) * planes;
+            let row = mosaic.samples[start..start + width * planes].iter().skip(c.min(planes - 1));
+            for (out, v) in plane[y * width..][..width].iter_mut().zip(row.step_by(planes)) {
+                *out = *v;
+            }
+        }
+    }
+}
+
+/// Square root that keeps the sign.
+#[inline(always)]
+pub(crate) fn signed_sqrt(v: f32) -> f32 {
+    v.abs().sqrt().copysign(v)
+}
+
+/// Square that keeps the sign: the inverse of [`signed_sqrt`].
+#[inline(always)]
+pub(crate) fn signed_square(v: f32) -> f32 {
+    v * v.abs()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+//! Clipped highlights: samples at the sensor's limit say only "at least this much".
+//!
+//! After balancing, the channels clip at different values (their multipliers), so that a white surface that is
+//! too bright turns pink or green. Rebuilding estimates a clipped sample from the other two channels around it:
+//! their mean, plus the typical difference between this channel and that mean where the picture begins to clip
+//! (measured once over the frame). Where every channel is clipped there is nothing left to estimate from, and
+//! the result is made neutral.
+
+use photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
+
+/// Pixels around a sample that rebuilding looks at.
+pub const BORDER: usize = 2;
+
+/// Share of the clipping level at which a sample counts as clipped: noise makes saturated samples scatter.
+pub const CLIPPED: f32 = 0.985;
+/// Share of the clipping level at which a fully clipped colour begins to be made neutral.
+const NEARLY: f32 = 0.9;
+
+/// How to treat clipped samples, prepared for one capture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Treatment {
+    /// Estimate from the other channels.
+    Rebuild {
+        /// Balanced value at which each channel clips (its multiplier).
+        limits: [f32; 3],
+        /// Typical difference between a channel and the mean of the two others near clipped areas.
+        offsets: [f32; 3],
+    },
+    /// Cut every channel at the lowest limit, 1.
+    Clip,
+    /// Leave the samples alone.
+    Keep,
+}
+
+/// Treats the samples of a balanced mosaic. The outermost [`BORDER`] pixels are left as they are.
+pub fn treat(mosaic: &mut Mosaic<f32>, treatment: &Treatment) {
+    match (treatment, &mosaic.layout) {
+        (Treatment::Keep, _) | (_, Layout::Monochrome) => {}
+        (Treatment::Clip, _) => {
+            for v in &mut mosaic.samples {
+                *v = v.min(1.0);
+            }
+        }
+        (Treatment::Rebuild { limits, offsets }, Layout::Cfa(cfa)) => {
+            let cfa = cfa.clone();
+            rebuild_mosaic(mosaic, &cfa, *limits, *offsets);
+        }
+        (Treatment::Rebuild { limits, offsets }, Layout::Rgb) => {
+            for pixel in mosaic.samples.chunks_exact_mut(3) {
+                let seen = [pixel[0], pixel[1], pixel[2]];
+                for c in 0..3 {
+                    if seen[c] >= CLIPPED * limits[c] {
+                        let others = (seen[(c + 1) % 3] + seen[(c + 2) % 3]) / 2.0;
+                        pixel[c] = seen[c].max(others + offsets[c]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets: [f32; 3]) {
+    let (width, height) = (mosaic.size.width, mosaic.size.height);
+    let lowest = limits.iter().fold(f32::MAX, |a, &b| a.min(b)) * CLIPPED;
+    if width <= 2 * BORDER || height <= 2 * BORDER || !mosaic.samples.iter().any(|&v| v >= lowest) {
+        return;
+    }
+    // Bayer shows every colour within one pixel, larger arrays within two.
+    let reach = if cfa.width() <= 2 { 1 } else { BORDER };
+    let plane = |x: usize, y: usize| cfa.at(x, y).plane().unwrap_or(1);
+    let seen = mosaic.samples.clone();
+    for y in BORDER..height - BORDER {
+        for x in BORDER..width - BORDER {
+            let own = plane(x, y);
+            let v = seen[y * width + x];
+            if v < CLIPPED * limits[own] {
+                continue;
+            }
+            let (mut sums, mut counts) = ([0f32; 3], [0f32; 3]);
+            for v in y - reach..=y + reach {
+                for u in x - reach..=x + reach {
+                    let c = plane(u, v);
+                    sums[c] += seen[v * width + u];
+                    counts[c] += 1.0;
+                }
+            }
+            let mean = |c: usize| sums[c] / counts[c].max(1.0);
+            let others = (mean((own + 1) % 3) + mean((own + 2) % 3)) / 2.0;
+            mosaic.samples[y * width + x] = v.max(others + offsets[own]);
+        }
+    }
+}
+
+/// Makes neutral what is clipped in every channel.
+pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
+    let Treatment::Rebuild { limits, .. } = treatment else { return };
+    let [r, g, b] = picture.planes_mut();
+    let scale = limits.map(|l| 1.0 / l);
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            for ((r, g), b) in r.iter_mut().zip(g).zip(b) {
+                let share = (*r * scale[0]).min(*g * scale[1]).min(*b * scale[2]);
+                let t = ((share - NEARLY) * (1.0 / (CLIPPED - NEARLY))).clamp(0.0, 1.0);
+                let weight = t * t * (3.0 - 2.0 * t);
+                // The brightest channel is the best guess of how bright the surface is at least.
+                let white = r.max(*g).max(*b);
+                *r += (white - *r) * weight;
+                *g += (white - *g) * weight;
+                *b += (white - *b) * weight;
+            }
+        },
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use photo::Size;
+
+    const LIMITS: [f32; 3] = [2.0, 1.0, 1.5];
+    const TREATMENT: Treatment = Treatment::Rebuild { limits: LIMITS, offsets: [0.0; 3] };
+
+    /// A grey surface of the given light under an RGGB array, clipped by the sensor.
+    fn grey(light: f32) -> Mosaic<f32> {
+        let cfa = Cfa::parse("RGGB").unwrap();
+        let size = Size { width: 10, height: 10 };
+        let sample = |i: usize| light.min(LIMITS[cfa.at(i % 10, i / 10).plane().unwrap()]);
+        Mosaic { size, samples: (0..100).map(sample).collect(), layout: Layout::Cfa(cfa) }
+    }
+
+    #[test]
+    fn a_grey_that_clips_in_green_only_is_grey_again() {
+        let mut mosaic = grey(1.3);
+        treat(&mut mosaic, &TREATMENT);
+        for y in 2..8 {
+            for x in 2..8 {
+                assert!((mosaic.samples[y * 10 + x] - 1.3).abs() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_clipped_is_not_touched() {
+        let (before, mut after) = (grey(0.9), grey(0.9));
+        treat(&mut after, &TREATMENT);
+        assert_eq!(before, after);
+    }
+
+    #[test]
+    fn a_surface_that_clips_in_every_channel_is_neutral() {
+        let planes = LIMITS.map(|l| vec![l]);
+        let mut picture = Rgb::from_planes(Size { width: 1, height: 1 }, planes).unwrap();
+        neutralise(&mut picture, &TREATMENT);
+        let [r, g, b] = picture.at(0, 0);
+        assert!((r - g).abs() < 1e-6 && (g - b).abs() < 1e-6 && r >= 2.0 - 1e-6, "{r} {g} {b}");
+    }
+
+    #[test]
+    fn a_saturated_red_light_keeps_its_hue() {
+        let mut picture =
+            Rgb::from_planes(Size { width: 1, height: 1 }, [vec![2.0], vec![0.2], vec![0.1]]).unwrap();
+        neutralise(&mut picture, &TREATMENT);
+        assert_eq!(picture.at(0, 0), [2.0, 0.2, 0.1]);
+    }
+}

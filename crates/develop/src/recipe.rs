@@ -1,0 +1,143 @@
+//! What a person asks for: the settings of each stage, all with defaults.
+
+use colour::RgbSpace;
+
+/// How a photograph shall be developed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Recipe {
+    /// White of the light.
+    pub balance: Balance,
+    /// What becomes of clipped highlights.
+    pub highlights: Highlights,
+    /// How missing colours are interpolated.
+    pub demosaic: Demosaic,
+    /// Brightness.
+    pub exposure: Exposure,
+    /// Rendering from scene to display.
+    pub look: Look,
+    /// Which part of the frame.
+    pub crop: Crop,
+    /// Space and sample type of the result.
+    pub output: Output,
+}
+
+/// Where the white of the light comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Balance {
+    /// As the camera recorded it; from the picture when it did not.
+    #[default]
+    AsShot,
+    /// Daylight at noon, CIE D55.
+    Daylight,
+    /// Estimated from the picture.
+    Auto,
+    /// A colour temperature (2000..=25000 K) and a tint (-150 green ..= 150 magenta, 0 on the Planckian locus).
+    Kelvin {
+        /// Correlated colour temperature, K.
+        kelvin: f64,
+        /// Distance from the Planckian locus, 3000 units per unit of CIE 1960 uv, magenta positive.
+        tint: f64,
+    },
+    /// A grey surface in the picture: centre and side of a square, in pixels of the developed picture.
+    Spot {
+        /// Column of the centre.
+        x: usize,
+        /// Row of the centre.
+        y: usize,
+        /// Side of the square.
+        side: usize,
+    },
+    /// Multipliers for red, green and blue; only their ratios count.
+    Multipliers([f64; 3]),
+}
+
+/// What becomes of samples at the sensor's limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Highlights {
+    /// Clipped channels are estimated from the others; where all are clipped the result is neutral.
+    #[default]
+    Rebuild,
+    /// Every channel is cut at the level where the first one clips: white stays white, detail is lost.
+    Clip,
+    /// Nothing: values stay as the sensor gave them, which tints clipped areas. For measurement.
+    Keep,
+}
+
+/// How missing colours of a mosaic are interpolated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Demosaic {
+    /// The best for the sensor: directional LMMSE for Bayer, a directional method for X-Trans.
+    #[default]
+    Best,
+    /// Bilinear: fast and soft; the reference for tests.
+    Bilinear,
+}
+
+/// Brightness.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Exposure {
+    /// Stops to add: +1 is twice the light.
+    pub stops: f64,
+    /// Whether to choose a brightness from the picture first.
+    pub auto: bool,
+}
+
+/// Rendering from scene to display.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Look {
+    /// Gentle contrast and soft highlights, colours as measured.
+    #[default]
+    Neutral,
+    /// More contrast and chroma.
+    Vivid,
+    /// Low contrast, for further editing.
+    Flat,
+    /// Strictly scene-linear: no automatic anything, not even the maker's baseline exposure.
+    Linear,
+}
+
+/// Which part of the frame is developed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Crop {
+    /// What the maker shows.
+    #[default]
+    Default,
+    /// Everything that light falls on.
+    Active,
+}
+
+/// Space and sample type of the result.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Output {
+    /// Colour space.
+    pub space: OutputSpace,
+    /// Sample type.
+    pub bits: Bits,
+}
+
+/// Colour space of the result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum OutputSpace {
+    /// An RGB space with its transfer curve.
+    Rgb(RgbSpace),
+    /// Linear, balanced camera RGB before any profile.
+    Camera,
+}
+
+impl Default for OutputSpace {
+    fn default() -> Self {
+        Self::Rgb(RgbSpace::SRGB)
+    }
+}
+
+/// Sample type of the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Bits {
+    /// 8-bit integers.
+    #[default]
+    Eight,
+    /// 16-bit integers.
+    Sixteen,
+    /// 32-bit floating point, not cut at black and white.
+    Float,
+}

@@ -1,0 +1,227 @@
+//! The white of the light: from the camera's neutral to a chromaticity and back (DNG 1.7, chapter 6, "Mapping
+//! Camera Color Space to CIE XYZ Space").
+
+use colour::adaptation::bradford;
+use colour::temperature::Temperature;
+use colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, white};
+use photo::{Calibration, Capture};
+
+use crate::survey::Survey;
+
+/// The maker's matrices of one camera.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraMatrix {
+    /// By rising temperature of the light; those without one only when there is no other.
+    calibrations: Vec<Calibration>,
+    analog_balance: Vector3,
+}
+
+impl CameraMatrix {
+    /// The matrices of a capture; `None` when it has none.
+    pub fn of(capture: &Capture) -> Option<Self> {
+        let mut calibrations: Vec<Calibration> =
+            capture.calibrations.iter().filter(|c| c.kelvin.is_some()).cloned().collect();
+        calibrations.sort_by(|a, b| a.kelvin.unwrap_or(0.0).total_cmp(&b.kelvin.unwrap_or(0.0)));
+        if calibrations.is_empty() {
+            calibrations.extend(capture.calibrations.first().cloned());
+        }
+        let analog_balance = Vector3::from(capture.analog_balance);
+        (!calibrations.is_empty()).then_some(Self { calibrations, analog_balance })
+    }
+
+    /// Camera RGB of a white; the largest value is 1. `None` when the matrices give no positive values for it.
+    pub fn neutral_of(&self, white: Xy) -> Option<[f64; 3]> {
+        let neutral = self.at(Temperature::of(white).kelvin).xyz_to_camera * Vector3::from(white.xyz());
+        let largest = neutral.max();
+        (neutral.min() > 0.0).then(|| (neutral / largest).into())
+    }
+
+    /// Chromaticity of the white that gives this neutral: the matrix depends on the white's temperature, so this
+    /// is a fixed point, found by iteration as the specification describes.
+    pub fn white_of(&self, neutral: [f64; 3]) -> Xy {
+        let mut xy = white::D50_XY;
+        for _ in 0..30 {
+            let matrix = self.at(Temperature::of(xy).kelvin).xyz_to_camera;
+            let next = matrix
+                .try_inverse()
+                .and_then(|inverse| Xyz::from(inverse * Vector3::from(neutral)).xy())
+                .filter(|w| w.x > 0.0 && w.y > 0.0);
+            let Some(next) = next else { return xy };
+            let step = (next.x - xy.x).abs() + (next.y - xy.y).abs();
+            // The mean of two steps cannot swing between two values for ever.
+            xy = Xy::new((xy.x + next.x) / 2.0, (xy.y + next.y) / 2.0);
+            if step < 1e-7 {
+                break;
+            }
+        }
+        xy
+    }
+
+    /// Balanced camera RGB to XYZ relative to D50, (1,1,1) to D50 exactly, for the light whose neutral and
+    /// white these are.
+    pub fn to_xyz_d50(&self, neutral: [f64; 3], white: Xy) -> Matrix3 {
+        let neutral = Vector3::from(neutral);
+        let here = self.at(Temperature::of(white).kelvin);
+        let unbalance = Matrix3::from_diagonal(&neutral);
+        let to_reference = here.reference_to_camera.try_inverse().unwrap_or_else(Matrix3::identity);
+        let matrix = match here.forward {
+            Some(forward) => {
+                let reference_neutral = to_reference * neutral;
+                let rebalance = Matrix3::from_diagonal(&reference_neutral.map(|v| 1.0 / v));
+                forward * rebalance * to_reference * unbalance
+            }
+            None => {
+                let camera_to_xyz = here.xyz_to_camera.try_inverse().unwrap_or_else(Matrix3::identity);
+                bradford(white.xyz(), white::D50) * camera_to_xyz * unbalance
+            }
+        };
+        white_preserving(matrix)
+    }
+
+    /// The matrices for a light of `kelvin`: between two calibrations by mired, beyond them the nearest.
+    fn at(&self, kelvin: f64) -> Matrices {
+        let mut low = &self.calibrations[0];
+        let mut weight = 0.0;
+        let mut high = low;
+        for next in &self.calibrations {
+            let (Some(a), Some(b)) = (low.kelvin, next.kelvin) else { break };
+            high = next;
+            if kelvin <= b {
+                weight = if b > a {
+                    ((1.0 / a - 1.0 / kelvin) / (1.0 / a - 1.0 / b)).clamp(0.0, 1.0)
+                } else {
+                    0.0
+                };
+                break;
+            }
+            low = next;
+        }
+        let mix = |a: Matrix3, b: Matrix3| a + (b - a) * weight;
+        let identity = Matrix3::identity;
+        let color = mix(low.color_matrix, high.color_matrix);
+        let calibration = mix(
+            low.camera_calibration.unwrap_or_else(identity),
+            high.camera_calibration.unwrap_or_else(identity),
+        );
+        let forward = match (low.forward_matrix, high.forward_matrix) {
+            (Some(a), Some(b)) => Some(mix(a, b)),
+            (a, b) => a.or(b),
+        };
+        let reference_to_camera = Matrix3::from_diagonal(&self.analog_balance) * calibration;
+        Matrices { xyz_to_camera: reference_to_camera * color, reference_to_camera, forward }
+    }
+}
+
+struct Matrices {
+    xyz_to_camera: Matrix3,
+    reference_to_camera: Matrix3,
+    forward: Option<Matrix3>,
+}
+
+/// The matrix with its rows scaled so that (1,1,1) gives D50 exactly.
+fn white_preserving(matrix: Matrix3) -> Matrix3 {
+    let white = matrix * Vector3::new(1.0, 1.0, 1.0);
+    let scale = Vector3::from(white::D50).component_div(&white);
+    if scale.iter().all(|s| s.is_finite() && *s > 0.0) {
+        Matrix3::from_diagonal(&scale) * matrix
+    } else {
+        RgbSpace::SRGB.to_xyz_under(white::D50)
+    }
+}
+
+/// Estimates the neutral from the picture: the densest place of the blocks' colours in log chromaticity, found
+/// by shifting a mean (Cheng, "Mean shift, mode seeking, and clustering", IEEE PAMI 17(8), 1995), kept near the
+/// Planckian locus where the camera's matrix is known. `None` when too little of the picture is usable.
+pub fn estimate(survey: &Survey, matrix: Option<&CameraMatrix>) -> Option<[f64; 3]> {
+    const DARKEST: f32 = 0.002;
+    const FEWEST: usize = 16;
+    let colours: Vec<[f64; 2]> = survey
+        .blocks
+        .iter()
+        .filter(|b| !b.clipped.contains(&true) && b.mean.iter().all(|&v| v > DARKEST))
+        .map(|b| b.mean.map(f64::from))
+        .map(|[r, g, b]| [(r / g).ln(), (b / g).ln()])
+        .collect();
+    if colours.len() < FEWEST {
+        return None;
+    }
+    let median = |k: usize| {
+        let mut values: Vec<f64> = colours.iter().map(|c| c[k]).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let mut centre = [median(0), median(1)];
+    for width in [0.5f64, 0.35, 0.25, 0.25, 0.25, 0.25] {
+        let (mut sum, mut weights) = ([0.0; 2], 0.0);
+        for c in &colours {
+            let distance2 = (c[0] - centre[0]).powi(2) + (c[1] - centre[1]).powi(2);
+            let weight = (-distance2 / (2.0 * width * width)).exp();
+            sum = [sum[0] + weight * c[0], sum[1] + weight * c[1]];
+            weights += weight;
+        }
+        if weights > 0.0 {
+            centre = sum.map(|s| s / weights);
+        }
+    }
+    let neutral = [centre[0].exp(), 1.0, centre[1].exp()];
+    let likely = matrix.and_then(|matrix| {
+        let white = Temperature::of(matrix.white_of(neutral));
+        let kept =
+            Temperature { kelvin: white.kelvin.clamp(2200.0, 12000.0), duv: white.duv.clamp(-0.015, 0.015) };
+        matrix.neutral_of(kept.xy())
+    });
+    Some(likely.unwrap_or(neutral))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> CameraMatrix {
+        // XYZ to camera of a made-up camera that is redder under A.
+        let d65 = Matrix3::new(0.9, -0.3, -0.05, -0.4, 1.2, 0.2, -0.05, 0.15, 0.6);
+        let a = Matrix3::new(1.0, -0.35, -0.1, -0.35, 1.15, 0.2, 0.0, 0.1, 0.55);
+        let calibration = |kelvin, color_matrix| Calibration {
+            kelvin: Some(kelvin),
+            color_matrix,
+            forward_matrix: None,
+            camera_calibration: None,
+        };
+        CameraMatrix {
+            calibrations: vec![calibration(2856.0, a), calibration(6504.0, d65)],
+            analog_balance: Vector3::new(1.0, 1.0, 1.0),
+        }
+    }
+
+    #[test]
+    fn the_neutral_of_a_white_gives_that_white_back() {
+        for kelvin in [2000.0, 2856.0, 4000.0, 5003.0, 6504.0, 9000.0] {
+            let white = Temperature { kelvin, duv: 0.003 }.xy();
+            let found = camera().white_of(camera().neutral_of(white).unwrap());
+            assert!(
+                (found.x - white.x).abs() + (found.y - white.y).abs() < 1e-5,
+                "{kelvin}: {found:?} {white:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn balanced_white_is_d50() {
+        let white = Temperature { kelvin: 3500.0, duv: 0.0 }.xy();
+        let matrix = camera().to_xyz_d50(camera().neutral_of(white).unwrap(), white);
+        let d50 = matrix * Vector3::new(1.0, 1.0, 1.0);
+        assert!((d50 - Vector3::from(white::D50)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_forward_matrix_is_used_where_there_is_one() {
+        let mut camera = camera();
+        let forward = RgbSpace::PROPHOTO.to_xyz_under(white::D50);
+        for c in &mut camera.calibrations {
+            c.forward_matrix = Some(forward);
+        }
+        let white = Temperature { kelvin: 3500.0, duv: 0.0 }.xy();
+        let matrix = camera.to_xyz_d50(camera.neutral_of(white).unwrap(), white);
+        assert!((matrix - forward).norm() < 1e-3);
+    }
+}
