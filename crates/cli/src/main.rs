@@ -1,2 +1,105 @@
-//! The program `darkroot`.
-fn main() {}
+//! The program `darkroot`: arguments to settings to the library.
+//!
+//! Data goes to stdout, words to stderr. Exit codes: 0 all done, 1 some file failed, 2 wrong usage, 130
+//! interrupted.
+
+mod develop;
+mod inspect;
+mod progress;
+mod shell;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Develop raw photographs with exposure-invariant colour.
+#[derive(Debug, Parser)]
+#[command(name = "darkroot", version, max_term_width = 100, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Options of every command.
+#[derive(Debug, Clone, Copy, Args)]
+struct Common {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+
+    /// Say more: white balance, demosaicing, decoder
+    #[arg(short, long, global = true)]
+    verbose: bool,
+
+    /// Number of threads; all cores if not given
+    #[arg(long, global = true, value_name = "N", env = "DARKROOT_THREADS")]
+    threads: Option<usize>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Develop(develop::Develop),
+    Inspect(inspect::Inspect),
+    Completions(shell::Completions),
+    Man(shell::Man),
+}
+
+/// How a command that ran to its end came out.
+enum Outcome {
+    Done,
+    SomeFailed,
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    keep_decoders_quiet();
+    remove_unfinished_on_interrupt();
+    if let Some(threads) = cli.common.threads {
+        // Fails only when the pool exists already, which nothing before this line makes.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    }
+    let outcome = match cli.command {
+        Command::Develop(command) => command.run(cli.common),
+        Command::Inspect(command) => command.run(),
+        Command::Completions(command) => command.run(),
+        Command::Man(command) => command.run(),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::SomeFailed) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// A decoder that panics over a damaged file is caught and becomes an error; its own report helps nobody.
+fn keep_decoders_quiet() {
+    const DECODERS: [&str; 3] = ["flashraw", "rawloader", "imagepipe"];
+    let report = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let from_decoder =
+            info.location().is_some_and(|l| DECODERS.iter().any(|decoder| l.file().contains(decoder)));
+        if !from_decoder {
+            report(info);
+        }
+    }));
+}
+
+/// An interrupted program leaves no half-written file behind.
+fn remove_unfinished_on_interrupt() {
+    const INTERRUPTED: i32 = 130;
+    let handler = || {
+        darkroot::abandon();
+        std::process::exit(INTERRUPTED);
+    };
+    // Without a handler the program still works; only a temporary file may stay after an interrupt.
+    if let Err(error) = ctrlc::set_handler(handler) {
+        eprintln!("warning: interrupts cannot be handled: {error}");
+    }
+}

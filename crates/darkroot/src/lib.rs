@@ -1,1 +1,47 @@
-//! To come.
+//! Files in, files out: what the program `darkroot` does, for other programs.
+//!
+//! ```no_run
+//! use darkroot::{Job, ProfileStore, Settings};
+//!
+//! let settings = Settings::default();
+//! let store = ProfileStore::builtin();
+//! let job = Job { input: "DSC_0001.NEF".into(), output: "DSC_0001.jpg".into() };
+//! let report = darkroot::develop(&job, &settings, &store, None)?;
+//! println!("{} developed with {}", report.camera, report.colours);
+//! # Ok::<(), darkroot::Error>(())
+//! ```
+//!
+//! [`naming`] decides where outputs go and finds collisions before anything is written, [`develop()`] makes one
+//! file, [`inspect()`] says what a file is. Outputs are written beside their place and renamed when complete: an
+//! output is absent, the old one, or the whole new one.
+//!
+//! **What it does not do:** it prints nothing and reads no arguments.
+
+pub mod settings;
+pub use settings::{Engine, ProfileChoice, Settings, SettingsError};
+
+pub mod naming;
+pub use naming::{Job, NamingError, Target, plan_outputs};
+
+pub mod job;
+pub use job::{Report, Step, develop};
+
+pub mod inspect;
+pub use inspect::{Inspection, inspect, save_preview};
+
+pub mod store;
+pub use store::ProfileStore;
+
+pub mod error;
+pub use error::Error;
+
+mod files;
+pub use files::abandon;
+
+#[cfg(feature = "imagepipe")]
+mod pipe;
+
+pub use encode::{ChromaSubsampling, Format, Options as EncodeOptions};
+
+/// Version of Darkroot, as outputs carry it.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

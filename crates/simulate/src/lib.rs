@@ -1,1 +1,35 @@
-//! To come.
+//! Reflectances x light x camera to captures, and DNG and NEF bytes of them.
+//!
+//! A [`Scene`] says which reflectance each pixel shows; [`expose`](expose::expose) makes a
+//! [`photo::Capture`] of it as a [`Camera`] would, and [`dng::write`] and [`nef::write`] make files of that, so
+//! what a developed picture ought to look like is known exactly.
+//!
+//! **What it does not do:** it reads no file and no clock; it simulates no lens but for shading and veiling glare.
+//! The same arguments give the same bytes on every machine.
+
+pub mod reflectance;
+
+pub mod chart;
+
+pub mod scene;
+pub use scene::{Patch, Scene};
+
+pub mod camera;
+pub use camera::Camera;
+
+pub mod expose;
+pub use expose::Exposure;
+
+pub mod dng;
+pub mod nef;
+
+pub mod samples;
+
+mod bits;
+mod exact;
+mod ljpeg;
+mod preview;
+mod random;
+mod still_life;
+mod tag;
+mod tiff_writer;

@@ -1,0 +1,122 @@
+//! What can go wrong with one file. Each message names the file, what is wrong and what to do.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be developed or inspected.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The input cannot be read.
+    #[error("{path}: cannot be read: {reason}", path = path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says, with what to do.
+        reason: String,
+    },
+    /// The input is no raw file, or damaged.
+    #[error("{path}: {source}", path = path.display())]
+    Raw {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: raw::Error,
+    },
+    /// The capture cannot be developed as asked.
+    #[error("{path}: {source}", path = path.display())]
+    Plan {
+        /// The file.
+        path: PathBuf,
+        /// What does not fit.
+        source: develop::Error,
+    },
+    /// The profile file is unusable.
+    #[error("{path}: {source}", path = path.display())]
+    Profile {
+        /// The profile's file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: profile::Error,
+    },
+    /// The profile is for another camera.
+    #[error(
+        "{path}: is a profile for {of}, but {input} was taken with {camera}; choose another `--profile`, or add the \
+         camera to its `aliases` if they are the same", path = path.display(), input = input.display()
+    )]
+    OtherCamera {
+        /// The profile's file.
+        path: PathBuf,
+        /// The camera of the profile.
+        of: String,
+        /// The raw file.
+        input: PathBuf,
+        /// The camera of the raw file.
+        camera: String,
+    },
+    /// The output exists.
+    #[error("{path}: exists already; add `--overwrite` to replace it, or choose another `-o`", path = path.display())]
+    Exists {
+        /// The output.
+        path: PathBuf,
+    },
+    /// The output cannot be written.
+    #[error("{path}: cannot be written: {reason}", path = path.display())]
+    Write {
+        /// The output.
+        path: PathBuf,
+        /// What the system says, with what to do.
+        reason: String,
+    },
+    /// The format cannot hold the picture.
+    #[error("{path}: {source}", path = path.display())]
+    Encode {
+        /// The output.
+        path: PathBuf,
+        /// Why not.
+        source: encode::Error,
+    },
+    /// The file has no embedded preview.
+    #[error("{path}: has no embedded JPEG preview; develop it instead", path = path.display())]
+    NoPreview {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The second engine failed.
+    #[error("{path}: the engine imagepipe cannot develop it ({reason}); leave out `--engine`", path = path.display())]
+    Engine {
+        /// The file.
+        path: PathBuf,
+        /// What it says.
+        reason: String,
+    },
+}
+
+impl Error {
+    pub(crate) fn read(path: &Path, error: &io::Error) -> Self {
+        let reason = match error.kind() {
+            io::ErrorKind::NotFound => "there is no such file; check the name".to_owned(),
+            io::ErrorKind::PermissionDenied => "permission denied; check the file's rights".to_owned(),
+            io::ErrorKind::IsADirectory => "it is a folder; name the files in it".to_owned(),
+            _ => error.to_string(),
+        };
+        Self::Read { path: path.to_owned(), reason }
+    }
+
+    pub(crate) fn write(path: &Path, error: &io::Error) -> Self {
+        let reason = match error.kind() {
+            io::ErrorKind::NotFound => "its folder does not exist; create it first".to_owned(),
+            io::ErrorKind::PermissionDenied => {
+                "permission denied; choose another folder with `-o`".to_owned()
+            }
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                "the disk is full; make room and run again".to_owned()
+            }
+            io::ErrorKind::ReadOnlyFilesystem => {
+                "the disk is read-only; choose another folder with `-o`".to_owned()
+            }
+            _ => error.to_string(),
+        };
+        Self::Write { path: path.to_owned(), reason }
+    }
+}

@@ -1,0 +1,86 @@
+//! Reading inputs whole, writing outputs whole or not at all.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use crate::Error;
+
+/// Temporary files that are being written now.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes every unfinished output: for a program that is told to stop at once. Finished outputs stay.
+pub fn abandon() {
+    for path in UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+        // What cannot be removed now could not be removed later either.
+        let _ = fs::remove_file(path);
+    }
+}
+
+/// Keeps a temporary file on the list of [`abandon`] while it is being written.
+struct Listed(PathBuf);
+
+impl Listed {
+    fn new(path: &Path) -> Self {
+        UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).retain(|p| *p != self.0);
+    }
+}
+
+/// Reads an input file.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
+    let attempt = || {
+        // On some systems a folder opens and only fails at the first read, with an obscure message.
+        if fs::metadata(path)?.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        fs::read(path)
+    };
+    attempt().map_err(|e| Error::read(path, &e))
+}
+
+/// What became of writing a file.
+pub(crate) enum Failed<E> {
+    /// Writing itself failed.
+    Io(io::Error),
+    /// The writer's own reason.
+    Other(E),
+}
+
+/// Writes a file through `fill`: to a temporary file in the same folder, flushed to the disk, then renamed. If
+/// anything fails, the temporary file is removed and what was at `path` stays. Without `overwrite` an existing
+/// file is an [`io::ErrorKind::AlreadyExists`], even one that appears meanwhile.
+pub(crate) fn write<E>(
+    path: &Path,
+    overwrite: bool,
+    fill: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
+) -> Result<(), Failed<E>> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".darkroot-").suffix(".part");
+    #[cfg(unix)]
+    {
+        // As a program would create it: readable for others as far as the user's umask allows.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let temporary = builder.tempfile_in(folder).map_err(Failed::Io)?;
+    let _listed = Listed::new(temporary.path());
+    let mut out = BufWriter::with_capacity(1 << 20, temporary.as_file());
+    fill(&mut out).map_err(Failed::Other)?;
+    out.flush().map_err(Failed::Io)?;
+    drop(out);
+    temporary.as_file().sync_all().map_err(Failed::Io)?;
+    let persisted = if overwrite { temporary.persist(path) } else { temporary.persist_noclobber(path) };
+    persisted.map(drop).map_err(|e| Failed::Io(e.error))
+}

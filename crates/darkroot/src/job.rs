@@ -1,0 +1,264 @@
+//! Developing one file.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use develop::{Colours, OutputSpace, Recipe};
+use encode::Format;
+use photo::metadata::{Directory, Metadata, Value, tag};
+use photo::{Capture, Picture, PictureSpace};
+use profile::Profile;
+use serde::Serialize;
+
+use crate::files::{self, Failed};
+use crate::settings::{Engine, ProfileChoice, Settings};
+use crate::store::{self, ProfileStore};
+use crate::{Error, Job, VERSION};
+
+/// How far a file has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// Reading and decoding.
+    Decode,
+    /// Running the stages.
+    Develop,
+    /// Encoding and writing.
+    Write,
+}
+
+/// What was done to one file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// The raw file.
+    pub input: PathBuf,
+    /// The picture.
+    pub output: PathBuf,
+    /// Its format.
+    pub format: String,
+    /// Its colour space.
+    pub space: String,
+    /// Its bits a sample.
+    pub bits: u8,
+    /// Its width in pixels.
+    pub width: usize,
+    /// Its height in pixels.
+    pub height: usize,
+    /// The camera.
+    pub camera: String,
+    /// Decoder and version.
+    pub decoder: String,
+    /// "darkroot" or "imagepipe".
+    pub engine: String,
+    /// What gave the colours, in words.
+    pub colours: String,
+    /// Path of the profile or "built in", when a profile was used.
+    pub profile: Option<String>,
+    /// Correlated colour temperature of the light, K, and tint, where known.
+    pub kelvin: Option<f64>,
+    /// Tint of the light: magenta positive.
+    pub tint: Option<f64>,
+    /// White-balance multipliers of red, green and blue; the smallest is 1.
+    pub multipliers: [f32; 3],
+    /// Demosaicing method.
+    pub demosaic: String,
+    /// Factor on scene-linear light (exposure).
+    pub gain: f32,
+    /// What had to be assumed or left out.
+    pub notes: Vec<String>,
+    /// Time taken.
+    pub seconds: f64,
+}
+
+/// Develops one file and writes its picture. `progress`, if there is one, hears of each step as it begins.
+///
+/// # Errors
+/// One sentence that names the file, what is wrong and what to do. Nothing is left half written.
+pub fn develop(
+    job: &Job,
+    settings: &Settings,
+    store: &ProfileStore,
+    progress: Option<&dyn Fn(Step)>,
+) -> Result<Report, Error> {
+    let start = Instant::now();
+    let step = |s: Step| {
+        if let Some(progress) = progress {
+            progress(s);
+        }
+    };
+    let (input, output) = (&job.input, &job.output);
+    if !settings.overwrite && output.symlink_metadata().is_ok() {
+        return Err(Error::Exists { path: output.clone() });
+    }
+    let format = format_of(output, settings);
+    let recipe =
+        settings.resolve(format).map_err(|e| Error::Write { path: output.clone(), reason: e.to_string() })?;
+
+    step(Step::Decode);
+    let capture = decode(input, settings)?;
+
+    step(Step::Develop);
+    let (picture, mut report) = match settings.engine {
+        Engine::Darkroot => own_engine(input, &capture, settings, store, &recipe)?,
+        Engine::Imagepipe => second_engine(input, &capture, &recipe)?,
+    };
+    let mut notes = capture.notes.clone();
+    let metadata = metadata_for(&capture, &picture);
+    drop(capture);
+
+    step(Step::Write);
+    let write = |out: &mut io::BufWriter<&std::fs::File>| {
+        encode::write(&picture, format, &settings.encode, &metadata, out)
+    };
+    files::write(output, settings.overwrite, write).map_err(|failed| match failed {
+        Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
+        Failed::Io(e) => Error::write(output, &e),
+        Failed::Other(encode::Error::Io(e)) => Error::write(output, &e),
+        Failed::Other(source) => Error::Encode { path: output.clone(), source },
+    })?;
+
+    notes.append(&mut report.notes);
+    notes.dedup();
+    Ok(Report {
+        output: output.clone(),
+        format: format.name().to_owned(),
+        space: picture.space.name(),
+        bits: picture.samples.bits(),
+        notes,
+        seconds: start.elapsed().as_secs_f64(),
+        ..report
+    })
+}
+
+/// The format of an output: the one asked for, else by its ending.
+fn format_of(output: &Path, settings: &Settings) -> Format {
+    let by_name = || output.extension().and_then(|e| e.to_str()).and_then(Format::from_extension);
+    settings.format.or_else(by_name).unwrap_or_else(|| settings.default_format())
+}
+
+fn decode(input: &Path, settings: &Settings) -> Result<Capture, Error> {
+    let bytes = files::read(input)?;
+    raw::decode(&bytes, settings.decoder, &settings.limits)
+        .map_err(|source| Error::Raw { path: input.to_owned(), source })
+}
+
+fn own_engine(
+    input: &Path,
+    capture: &Capture,
+    settings: &Settings,
+    store: &ProfileStore,
+    recipe: &Recipe,
+) -> Result<(Picture, Report), Error> {
+    let chosen = choose_profile(input, capture, settings, store)?;
+    let (profile, place) = chosen.map_or((None, None), |(p, place)| (Some(p), Some(place)));
+    let plan = develop::plan(capture, profile.as_ref(), recipe)
+        .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
+    let picture = plan.render(capture);
+    let camera_output = recipe.output.space == OutputSpace::Camera;
+    let colours = match (plan.colours, profile.as_ref()) {
+        _ if camera_output => "none (camera RGB)".to_owned(),
+        (Colours::Profile, Some(p)) => {
+            let light = p.calibrations().iter().map(|c| c.light.name.as_str()).collect::<Vec<_>>().join(", ");
+            format!("profile for {} ({light})", p.camera().name())
+        }
+        (Colours::CameraMatrix, _) if capture.source.format == "DNG" => "matrix in the file".to_owned(),
+        (Colours::CameraMatrix, _) => "camera matrix".to_owned(),
+        (Colours::Grey, _) => "monochrome".to_owned(),
+        _ => "assumed".to_owned(),
+    };
+    let report = Report {
+        engine: "darkroot".to_owned(),
+        colours,
+        profile: place.filter(|_| !camera_output),
+        kelvin: plan.white.map(|w| w.kelvin),
+        tint: plan.white.map(|w| w.tint()),
+        multipliers: plan.multipliers,
+        demosaic: plan.demosaic.name().to_owned(),
+        gain: plan.gain,
+        notes: plan.notes,
+        ..blank_report(input, capture, &picture)
+    };
+    Ok((picture, report))
+}
+
+/// The first profile that fits, with the place it is from.
+fn choose_profile(
+    input: &Path,
+    capture: &Capture,
+    settings: &Settings,
+    store: &ProfileStore,
+) -> Result<Option<(Profile, String)>, Error> {
+    match &settings.profile {
+        ProfileChoice::Matrix => Ok(None),
+        ProfileChoice::Automatic => {
+            Ok(store.find(&capture.camera).map(|f| (f.profile.clone(), f.place.clone())))
+        }
+        ProfileChoice::File(path) => {
+            let profile = store::read(path)?;
+            if !store::is_for(&profile, &capture.camera) {
+                return Err(Error::OtherCamera {
+                    path: path.clone(),
+                    of: profile.camera().name(),
+                    input: input.to_owned(),
+                    camera: capture.camera.name(),
+                });
+            }
+            Ok(Some((profile, path.display().to_string())))
+        }
+    }
+}
+
+#[cfg(feature = "imagepipe")]
+fn second_engine(input: &Path, capture: &Capture, recipe: &Recipe) -> Result<(Picture, Report), Error> {
+    let picture = crate::pipe::develop(capture, recipe.output.bits)
+        .map_err(|reason| Error::Engine { path: input.to_owned(), reason })?;
+    let report = Report {
+        engine: "imagepipe".to_owned(),
+        colours: "camera matrix, by imagepipe".to_owned(),
+        demosaic: "bilinear, by imagepipe".to_owned(),
+        ..blank_report(input, capture, &picture)
+    };
+    Ok((picture, report))
+}
+
+#[cfg(not(feature = "imagepipe"))]
+fn second_engine(input: &Path, _: &Capture, _: &Recipe) -> Result<(Picture, Report), Error> {
+    let reason = "this build was made without it".to_owned();
+    Err(Error::Engine { path: input.to_owned(), reason })
+}
+
+fn blank_report(input: &Path, capture: &Capture, picture: &Picture) -> Report {
+    Report {
+        input: input.to_owned(),
+        output: PathBuf::new(),
+        format: String::new(),
+        space: String::new(),
+        bits: 0,
+        width: picture.size.width,
+        height: picture.size.height,
+        camera: capture.camera.name(),
+        decoder: capture.source.decoder.clone(),
+        engine: String::new(),
+        colours: String::new(),
+        profile: None,
+        kelvin: None,
+        tint: None,
+        multipliers: [1.0; 3],
+        demosaic: String::new(),
+        gain: 1.0,
+        notes: Vec::new(),
+        seconds: 0.0,
+    }
+}
+
+/// The camera's fields with what developing changed.
+fn metadata_for(capture: &Capture, picture: &Picture) -> Metadata {
+    const SRGB: u16 = 1;
+    const UNCALIBRATED: u16 = 65535;
+    let mut metadata = capture.metadata.clone();
+    metadata.set(Directory::Image, tag::SOFTWARE, Value::Text(format!("Darkroot {VERSION}")));
+    let srgb = picture.space == PictureSpace::Rgb(colour::RgbSpace::SRGB);
+    let space = if srgb { SRGB } else { UNCALIBRATED };
+    metadata.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));
+    metadata
+}

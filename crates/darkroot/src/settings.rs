@@ -1,0 +1,249 @@
+//! Everything a person can ask for when developing files, checked once.
+
+use std::path::PathBuf;
+
+use develop::{Bits, Look, OutputSpace, Recipe};
+use encode::Format;
+use photo::PictureSpace;
+use raw::{Decoder, Limits};
+
+/// Which profile gives the colours.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum ProfileChoice {
+    /// The first that fits: the user's folder, the built-in profiles, the file's own matrices.
+    #[default]
+    Automatic,
+    /// The file's own matrices.
+    Matrix,
+    /// This file.
+    File(PathBuf),
+}
+
+/// Which program develops.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Engine {
+    /// Darkroot's own stages.
+    #[default]
+    Darkroot,
+    /// imagepipe 0.5, for comparison. It has its own fixed stages: only decoder, format and size of the recipe
+    /// apply to it.
+    Imagepipe,
+}
+
+/// What is asked for, apart from inputs and outputs.
+#[derive(Debug, Clone, Default)]
+pub struct Settings {
+    /// How to develop. The output's space and bits stand here too; [`Settings::resolve`] fills in what depends on
+    /// the format.
+    pub recipe: Recipe,
+    /// Colour space, where the person named one.
+    pub space: Option<OutputSpace>,
+    /// Bits a sample, where the person named them.
+    pub bits: Option<Bits>,
+    /// Format of the outputs, where the person named one; else their ending says.
+    pub format: Option<Format>,
+    /// How files are written.
+    pub encode: encode::Options,
+    /// Which profile.
+    pub profile: ProfileChoice,
+    /// Which engine.
+    pub engine: Engine,
+    /// Which decoder.
+    pub decoder: Decoder,
+    /// How much a file may ask for.
+    pub limits: Limits,
+    /// Whether existing outputs are replaced.
+    pub overwrite: bool,
+}
+
+/// Settings that contradict each other. Each message says what to do.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingsError {
+    /// The format cannot hold that many bits.
+    #[error("{format} cannot hold {bits} bits a sample, only {allowed}; choose another `--bits` or format")]
+    Bits {
+        /// The format.
+        format: &'static str,
+        /// What was asked.
+        bits: u8,
+        /// What it can hold.
+        allowed: String,
+    },
+    /// The format cannot hold the space.
+    #[error("{reason}")]
+    Space {
+        /// Why not and what to do.
+        reason: String,
+    },
+    /// Linear light in 8 bits.
+    #[error(
+        "{format} cannot hold linear light: 8 bits are too coarse for it; write a .tif or .exr file, or choose another \
+         `--look`"
+    )]
+    LinearInEightBits {
+        /// The format.
+        format: &'static str,
+    },
+    /// A curve on top of the linear look.
+    #[error(
+        "`--look linear` keeps numbers proportional to light, but {space} bends them; use `--space {space}-linear`"
+    )]
+    CurveOnLinear {
+        /// The space.
+        space: String,
+    },
+    /// Camera RGB in an integer format.
+    #[error("`--space camera` is for measurement: write a 32-bit .tif or an .exr file")]
+    CameraNeedsFloat,
+    /// Options that the second engine does not have.
+    #[error("`--engine imagepipe` has its own fixed rendering in sRGB: leave out {option}")]
+    Engine {
+        /// What it cannot do.
+        option: &'static str,
+    },
+}
+
+impl Settings {
+    /// The format that outputs get when neither name nor option says: JPEG, or TIFF for linear light.
+    pub fn default_format(&self) -> Format {
+        let linear = self.recipe.look == Look::Linear || self.space == Some(OutputSpace::Camera);
+        if linear { Format::Tiff } else { Format::Jpeg }
+    }
+
+    /// The recipe for a format: fills in space and bits where nobody named them, and checks that all of it fits.
+    ///
+    /// # Errors
+    /// Settings that contradict each other or the format.
+    pub fn resolve(&self, format: Format) -> Result<Recipe, SettingsError> {
+        let mut recipe = self.recipe;
+        let linear = recipe.look == Look::Linear;
+        let srgb = colour::RgbSpace::SRGB;
+        recipe.output.space = self.space.unwrap_or(OutputSpace::Rgb(match format {
+            Format::Exr => srgb.linear(),
+            _ if linear => srgb.linear(),
+            _ => srgb,
+        }));
+        let camera = recipe.output.space == OutputSpace::Camera;
+        let default_bits = if camera { 32 } else { format.default_bits() };
+        recipe.output.bits = self.bits.unwrap_or(match default_bits {
+            8 => Bits::Eight,
+            16 => Bits::Sixteen,
+            _ => Bits::Float,
+        });
+        let bits = match recipe.output.bits {
+            Bits::Eight => 8,
+            Bits::Sixteen => 16,
+            Bits::Float => 32,
+        };
+        if camera && (bits != 32 || !matches!(format, Format::Tiff | Format::Exr)) {
+            return Err(SettingsError::CameraNeedsFloat);
+        }
+        if linear && bits == 8 {
+            return Err(SettingsError::LinearInEightBits { format: format.name() });
+        }
+        if !format.bits().contains(&bits) {
+            let allowed: Vec<String> = format.bits().iter().map(u8::to_string).collect();
+            return Err(SettingsError::Bits { format: format.name(), bits, allowed: allowed.join(" or ") });
+        }
+        let space = match recipe.output.space {
+            OutputSpace::Rgb(space) => {
+                if linear && space.curve != colour::TransferCurve::Linear {
+                    return Err(SettingsError::CurveOnLinear { space: crate::settings::space_name(&space) });
+                }
+                PictureSpace::Rgb(space)
+            }
+            OutputSpace::Camera => PictureSpace::Camera,
+        };
+        format.accepts(&space).map_err(|e| SettingsError::Space { reason: e.to_string() })?;
+        if self.engine == Engine::Imagepipe {
+            check_imagepipe(self, &recipe)?;
+        }
+        Ok(recipe)
+    }
+}
+
+fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
+    let plain = Recipe { output: recipe.output, ..Recipe::default() };
+    let refuse = |option| Err(SettingsError::Engine { option });
+    if settings.profile != ProfileChoice::Automatic {
+        return refuse("`--profile`");
+    }
+    if recipe.output.space != OutputSpace::Rgb(colour::RgbSpace::SRGB) {
+        return refuse("`--space`");
+    }
+    if recipe.output.bits == Bits::Float {
+        return refuse("`--bits 32`");
+    }
+    if *recipe != plain {
+        return refuse("the options of looks, exposure, white balance, highlights, demosaicing and crop");
+    }
+    Ok(())
+}
+
+/// The spaces that a person can name, without the `-linear` ending.
+pub const SPACES: [(&str, colour::RgbSpace); 6] = [
+    ("srgb", colour::RgbSpace::SRGB),
+    ("display-p3", colour::RgbSpace::DISPLAY_P3),
+    ("adobe-rgb", colour::RgbSpace::ADOBE_RGB),
+    ("prophoto", colour::RgbSpace::PROPHOTO),
+    ("rec2020", colour::RgbSpace::REC2020),
+    ("ecirgb-v2", colour::RgbSpace::ECIRGB_V2),
+];
+
+/// The space of a name: one of [`SPACES`], each also with `-linear`, `aces2065-1` or `camera`.
+pub fn space(name: &str) -> Option<OutputSpace> {
+    if name == "camera" {
+        return Some(OutputSpace::Camera);
+    }
+    if name == "aces2065-1" {
+        return Some(OutputSpace::Rgb(colour::RgbSpace::ACES2065_1));
+    }
+    let (base, linear) = name.strip_suffix("-linear").map_or((name, false), |base| (base, true));
+    let (_, space) = SPACES.iter().find(|(n, _)| *n == base)?;
+    Some(OutputSpace::Rgb(if linear { space.linear() } else { *space }))
+}
+
+fn space_name(space: &colour::RgbSpace) -> String {
+    SPACES.iter().find(|(_, s)| s.primaries == space.primaries).map_or(space.name, |(n, _)| n).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settings(look: Look, space: Option<&str>, bits: Option<Bits>) -> Settings {
+        let recipe = Recipe { look, ..Recipe::default() };
+        Settings { recipe, space: space.map(|s| super::space(s).unwrap()), bits, ..Settings::default() }
+    }
+
+    #[test]
+    fn the_linear_look_is_linear_srgb_in_16_bits_unless_told_otherwise() {
+        let recipe = settings(Look::Linear, None, None).resolve(Format::Tiff).unwrap();
+        assert_eq!(recipe.output.space, OutputSpace::Rgb(colour::RgbSpace::SRGB.linear()));
+        assert_eq!(recipe.output.bits, Bits::Sixteen);
+    }
+
+    #[test]
+    fn contradictions_say_what_to_do() {
+        for (settings, format, word) in [
+            (settings(Look::Linear, None, None), Format::Jpeg, "--look"),
+            (settings(Look::Linear, Some("adobe-rgb"), None), Format::Tiff, "adobe-rgb-linear"),
+            (settings(Look::Neutral, Some("camera"), None), Format::Jpeg, ".exr"),
+            (settings(Look::Neutral, None, Some(Bits::Sixteen)), Format::Jpeg, "--bits"),
+            (settings(Look::Neutral, Some("adobe-rgb"), None), Format::Exr, "linear"),
+        ] {
+            let message = settings.resolve(format).unwrap_err().to_string();
+            assert!(message.contains(word), "{message}");
+        }
+    }
+
+    #[test]
+    fn every_space_has_a_linear_form() {
+        for (name, plain) in SPACES {
+            assert_eq!(space(name), Some(OutputSpace::Rgb(plain)));
+            assert_eq!(space(&format!("{name}-linear")), Some(OutputSpace::Rgb(plain.linear())));
+        }
+        assert_eq!(space("srgb-lines"), None);
+    }
+}

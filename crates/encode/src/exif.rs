@@ -1,0 +1,207 @@
+//! The fields of the shot as an Exif block.
+
+use std::io::Cursor;
+
+use ::exif::experimental::Writer;
+use ::exif::{Context, In, Rational, SRational, Tag};
+use colour::RgbSpace;
+use photo::metadata::{Directory, Field, Value, tag};
+use photo::{Metadata, Picture, PictureSpace};
+
+/// The fields as a block in the structure of TIFF, little endian, without the "Exif\0\0" that some files put
+/// before it. It is empty when there are no fields.
+///
+/// The orientation in the block is always 1, as the pixels are upright already. Fields that say how another
+/// file stores its pixels, and fields without a value, are left out. Text keeps its UTF-8 bytes.
+pub fn block(metadata: &Metadata) -> Vec<u8> {
+    let fields: Vec<::exif::Field> = fields(metadata)
+        .map(|field| ::exif::Field {
+            tag: Tag(context(field.directory), field.tag),
+            ifd_num: In::PRIMARY,
+            value: value(&field.value),
+        })
+        .collect();
+    if fields.is_empty() {
+        return Vec::new();
+    }
+    let upright = ::exif::Field {
+        tag: Tag(Context::Tiff, tag::ORIENTATION),
+        ifd_num: In::PRIMARY,
+        value: ::exif::Value::Short(vec![1]),
+    };
+    let mut writer = Writer::new();
+    writer.push_field(&upright);
+    fields.iter().for_each(|field| writer.push_field(field));
+    let mut block = Cursor::new(Vec::new());
+    match writer.write(&mut block, true) {
+        Ok(()) => block.into_inner(),
+        // Left are blocks of 4 GB and more.
+        Err(_) => Vec::new(),
+    }
+}
+
+/// The fields that are written for a picture, in the order of their tags, but for the orientation.
+pub(crate) fn fields(metadata: &Metadata) -> impl Iterator<Item = &Field> {
+    metadata.fields().iter().filter(|field| !is_about_storage(field) && !is_empty(&field.value))
+}
+
+/// The fields of the shot together with what the fields of the file must say of this picture: its size and
+/// whether it is in sRGB. No fields stay no fields.
+pub(crate) fn of_picture(metadata: &Metadata, picture: &Picture) -> Metadata {
+    let mut metadata = metadata.clone();
+    if fields(&metadata).next().is_none() {
+        return Metadata::default();
+    }
+    let srgb = match &picture.space {
+        PictureSpace::Rgb(space) => crate::format::same_colours(space, &RgbSpace::SRGB),
+        PictureSpace::Camera => false,
+    };
+    let mut set = |tag, value| metadata.set(Directory::Exif, tag, value);
+    set(tag::COLOUR_SPACE, Value::Shorts(vec![if srgb { 1 } else { UNCALIBRATED }]));
+    set(PIXEL_X_DIMENSION, Value::Longs(vec![picture.size.width as u32]));
+    set(PIXEL_Y_DIMENSION, Value::Longs(vec![picture.size.height as u32]));
+    if metadata.get(Directory::Exif, EXIF_VERSION).is_none() {
+        metadata.set(Directory::Exif, EXIF_VERSION, Value::Undefined(b"0232".to_vec()));
+    }
+    metadata
+}
+
+/// ColorSpace of a picture that its ICC profile describes.
+const UNCALIBRATED: u16 = 0xffff;
+const EXIF_VERSION: u16 = 0x9000;
+const PIXEL_X_DIMENSION: u16 = 0xa002;
+const PIXEL_Y_DIMENSION: u16 = 0xa003;
+/// Exif: what the maker wants to remember, in a form of its own.
+pub(crate) const MAKER_NOTE: u16 = 0x927c;
+
+/// Whether a field says how some other file stores its pixels or where it keeps a directory. In the file that
+/// is written it would be wrong.
+fn is_about_storage(field: &Field) -> bool {
+    match field.directory {
+        Directory::Image => matches!(
+            field.tag,
+            tag::ORIENTATION
+                | 0x00fe..=0x0103 // kind of subfile, size, bits, compression
+                | 0x0106 // photometric interpretation
+                | 0x010a // fill order
+                | 0x0111 // strips
+                | 0x0115..=0x0119 // samples a pixel, rows a strip, strips, least and largest value
+                | 0x011c // planar configuration
+                | 0x013d // predictor
+                | 0x012d | 0x013e..=0x013f // transfer function, white, primaries
+                | 0x0140..=0x015b // palette, tiles, subfiles, inks, sample format, JPEG tables
+                | 0x0200..=0x0214 // thumbnail, YCbCr
+                | 0x828d..=0x828e // colour filter array
+                | 0x8769 // Exif directory
+                | 0x8773 // ICC profile
+                | 0x8825 // GPS directory
+                | 0xc612..=0xcdff // DNG
+        ),
+        // Interoperability directory, colour filter array, gamma.
+        Directory::Exif => matches!(field.tag, 0xa005 | 0xa302 | 0xa500),
+        Directory::Gps => false,
+    }
+}
+
+fn is_empty(value: &Value) -> bool {
+    match value {
+        Value::Text(text) => text.is_empty(),
+        Value::Bytes(v) | Value::Undefined(v) => v.is_empty(),
+        Value::Shorts(v) => v.is_empty(),
+        Value::Longs(v) => v.is_empty(),
+        Value::Rationals(v) => v.is_empty(),
+        Value::SignedRationals(v) => v.is_empty(),
+    }
+}
+
+fn context(directory: Directory) -> Context {
+    match directory {
+        Directory::Image => Context::Tiff,
+        Directory::Exif => Context::Exif,
+        Directory::Gps => Context::Gps,
+    }
+}
+
+fn value(value: &Value) -> ::exif::Value {
+    match value {
+        Value::Text(text) => ::exif::Value::Ascii(vec![text.as_bytes().to_vec()]),
+        Value::Bytes(v) => ::exif::Value::Byte(v.clone()),
+        Value::Undefined(v) => ::exif::Value::Undefined(v.clone(), 0),
+        Value::Shorts(v) => ::exif::Value::Short(v.clone()),
+        Value::Longs(v) => ::exif::Value::Long(v.clone()),
+        Value::Rationals(v) => {
+            ::exif::Value::Rational(v.iter().map(|&(num, denom)| Rational { num, denom }).collect())
+        }
+        Value::SignedRationals(v) => {
+            ::exif::Value::SRational(v.iter().map(|&(num, denom)| SRational { num, denom }).collect())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{metadata, picture};
+
+    fn read(block: Vec<u8>) -> ::exif::Exif {
+        ::exif::Reader::new().read_raw(block).unwrap()
+    }
+
+    fn number(exif: &::exif::Exif, tag: Tag) -> Option<u32> {
+        exif.get_field(tag, In::PRIMARY)?.value.get_uint(0)
+    }
+
+    #[test]
+    fn every_field_comes_back() {
+        let exif = read(block(&metadata()));
+        for field in metadata().fields().iter().filter(|field| field.tag != tag::ORIENTATION) {
+            let back = exif.get_field(Tag(context(field.directory), field.tag), In::PRIMARY).unwrap();
+            match (&back.value, value(&field.value)) {
+                // Where the bytes lay is part of the value that was read.
+                (::exif::Value::Undefined(back, _), ::exif::Value::Undefined(there, _)) => {
+                    assert_eq!(*back, there);
+                }
+                (back, there) => assert_eq!(format!("{back:?}"), format!("{there:?}")),
+            }
+        }
+        assert_eq!(exif.fields().count(), metadata().fields().len());
+    }
+
+    #[test]
+    fn the_picture_is_upright_whatever_the_camera_said() {
+        let mut turned = metadata();
+        turned.set(Directory::Image, tag::ORIENTATION, Value::Shorts(vec![8]));
+        assert_eq!(number(&read(block(&turned)), Tag::Orientation), Some(1));
+    }
+
+    #[test]
+    fn no_fields_are_no_block() {
+        assert!(block(&Metadata::default()).is_empty());
+        let mut turned = Metadata::default();
+        turned.set(Directory::Image, tag::ORIENTATION, Value::Shorts(vec![6]));
+        turned.set(Directory::Image, tag::ARTIST, Value::Text(String::new()));
+        assert!(block(&turned).is_empty());
+        assert!(block(&of_picture(&turned, &picture(1, 1, 8, PictureSpace::Camera))).is_empty());
+    }
+
+    #[test]
+    fn what_the_raw_file_said_of_its_own_storage_is_left_out() {
+        let mut fields = metadata();
+        for tag in [0x0100, 0x0102, 0x0103, 0x0111, 0x0117, 0x014a, 0x0201, 0x8769, 0x8773, 0xc621] {
+            fields.set(Directory::Image, tag, Value::Longs(vec![99]));
+        }
+        fields.set(Directory::Exif, 0xa005, Value::Longs(vec![99]));
+        assert_eq!(block(&fields), block(&metadata()));
+    }
+
+    #[test]
+    fn the_fields_tell_the_size_and_whether_it_is_srgb() {
+        for (space, wanted) in [(RgbSpace::SRGB, 1), (RgbSpace::ADOBE_RGB, 0xffff)] {
+            let picture = picture(5, 3, 8, PictureSpace::Rgb(space));
+            let exif = read(block(&of_picture(&metadata(), &picture)));
+            assert_eq!(number(&exif, Tag::ColorSpace), Some(wanted));
+            assert_eq!(number(&exif, Tag::PixelXDimension), Some(5));
+            assert_eq!(number(&exif, Tag::PixelYDimension), Some(3));
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Settings of the encoders.
+
+use crate::Error;
+
+/// How JPEG stores the two colour differences.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ChromaSubsampling {
+    /// 4:4:4, every pixel has its own colour.
+    #[default]
+    S444,
+    /// 4:2:2, two pixels side by side share theirs.
+    S422,
+    /// 4:2:0, a square of four pixels shares its colour: the file is about a quarter smaller, fine coloured
+    /// detail is softer.
+    S420,
+}
+
+/// How TIFF stores its samples; every choice is lossless.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TiffCompression {
+    /// As they are: largest and fastest, and any program reads it.
+    None,
+    /// Deflate (Adobe's tag 8), integers as differences to their left neighbour (predictor 2).
+    #[default]
+    Deflate,
+}
+
+/// Settings of the encoders. Each format takes note of its own only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Quality of JPEG and AVIF, 1 (smallest file) to 100 (best picture). The two scales are not the same: AVIF
+    /// looks good at lower numbers.
+    pub quality: u8,
+    /// Colour resolution of JPEG.
+    pub subsampling: ChromaSubsampling,
+    /// Compression of TIFF.
+    pub compression: TiffCompression,
+    /// How little time AVIF may take, 1 (smallest file) to 10 (fastest).
+    pub avif_speed: u8,
+}
+
+impl Default for Options {
+    /// What suits a developed photograph: quality 92 with full colour resolution, deflated TIFF, fast AVIF.
+    fn default() -> Self {
+        Self {
+            quality: 92,
+            subsampling: ChromaSubsampling::default(),
+            compression: TiffCompression::default(),
+            avif_speed: 9,
+        }
+    }
+}
+
+impl Options {
+    /// Refuses numbers out of range.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        match self {
+            Self { quality: q, .. } if !(1..=100).contains(q) => Err(Error::Quality(*q)),
+            Self { avif_speed: s, .. } if !(1..=10).contains(s) => Err(Error::Speed(*s)),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_in_range() {
+        assert!(Options::default().check().is_ok());
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        for quality in [0, 101] {
+            let refused = Options { quality, ..Options::default() }.check();
+            assert!(matches!(refused, Err(Error::Quality(q)) if q == quality));
+        }
+        for avif_speed in [0, 11] {
+            let refused = Options { avif_speed, ..Options::default() }.check();
+            assert!(matches!(refused, Err(Error::Speed(s)) if s == avif_speed));
+        }
+    }
+}
