@@ -25,7 +25,7 @@ pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut impl Write
 /// What the library was made to do, and what it should not have done.
 #[derive(Debug, thiserror::Error)]
 enum Fault {
-    #[error("it panicked")]
+    #[error("it panicked; PNG and TIFF hold the same samples")]
     Panic,
     #[error("its headers are not those that were expected")]
     Header,
@@ -55,7 +55,7 @@ fn codestream(frame: &Frame<'_>) -> Result<Vec<u8>, Error> {
     let (width, height) = (canvas.width as usize, canvas.height as usize);
     let options = EncoderOptions::new(width, height, ColorSpace::RGB, depth);
     // The library reserves 24 bits a sample of 16 bits and panics when a picture needs more, as one does that
-    // jumps between opposite colours from pixel to pixel.
+    // jumps between opposite colours from pixel to pixel. That is an error here; the panic hook still speaks.
     let encoded = catch_unwind(AssertUnwindSafe(|| {
         let mut encoded = Vec::new();
         JxlSimpleEncoder::new(bytes, options).encode(&mut encoded).map(|_| encoded)
@@ -366,7 +366,8 @@ mod tests {
     #[test]
     fn a_picture_that_the_library_has_no_room_for_is_an_error_and_no_panic() {
         let size = Size { width: 512, height: 256 };
-        let pixel = |i: usize| if (i + i / size.width) % 2 == 0 { [65535, 0, 0] } else { [0, 0, 65535] };
+        let pixel =
+            |i: usize| if (i + i / size.width).is_multiple_of(2) { [65535, 0, 0] } else { [0, 0, 65535] };
         let samples = Samples::U16((0..size.area()).flat_map(pixel).collect());
         let picture = Picture { size, samples, space: SRGB };
         match encoded(&picture, Format::Jxl, &Metadata::default()) {
@@ -387,6 +388,11 @@ mod tests {
             for (row, column) in (0..9).map(|i| (i / 3, i % 3)) {
                 let error = (wanted[(row, column)] - found.v[row][column]).abs();
                 assert!(error < 2e-3, "{} {row} {column}: {error}", space.name);
+            }
+            let curve = read.red_trc.unwrap().make_linear_evaluator().unwrap();
+            for encoded in [0.02, 0.1, 0.5, 0.9] {
+                let error = space.curve.decode(encoded) - f64::from(curve.evaluate_value(encoded as f32));
+                assert!(error.abs() < 1e-3, "{} at {encoded}: {error}", space.name);
             }
         }
     }

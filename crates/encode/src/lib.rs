@@ -7,7 +7,7 @@
 //! | TIFF | 8, 16, 32 (float) | any, also camera RGB | none or deflate |
 //! | WebP | 8 | any with an ICC profile | lossless |
 //! | AVIF | 8 (stored as 10) | sRGB | lossy |
-//! | OpenEXR | 32 (float) | linear ones, also camera RGB | ZIP, lossless |
+//! | OpenEXR | 32 (float) | linear ones, also camera RGB | PIZ, lossless |
 //! | JPEG XL | 8, 16 | all but those with a ROMM or L\* curve | lossless |
 //!
 //! ```

@@ -35,7 +35,8 @@ pub struct Options {
     pub subsampling: ChromaSubsampling,
     /// Compression of TIFF.
     pub compression: TiffCompression,
-    /// How little time AVIF may take, 1 (smallest file) to 10 (fastest).
+    /// How little time AVIF may take, 1 (smallest file) to 10 (fastest). On two cores a picture of 24 megapixels
+    /// takes about 30 s at 8, 15 s at 9 and 9 s at 10, where its file is some 7 % larger.
     pub avif_speed: u8,
 }
 

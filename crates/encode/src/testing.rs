@@ -97,7 +97,7 @@ pub(crate) fn decoded(format: Format, file: &[u8]) -> (Size, Samples) {
         Format::Webp => decoded_by_image(image::ImageFormat::WebP, file),
         Format::Exr => decoded_by_exr(file),
         Format::Jxl => decoded_by_jxl_oxide(file),
-        Format::Avif => unimplemented!("no decoder of AV1"),
+        Format::Avif => panic!("no decoder of AV1"),
     }
 }
 
