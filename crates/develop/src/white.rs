@@ -2,7 +2,7 @@
 //! Camera Color Space to CIE XYZ Space").
 
 use colour::adaptation::bradford;
-use colour::temperature::Temperature;
+use colour::temperature::{Temperature, daylight_xy};
 use colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, white};
 use photo::{Calibration, Capture};
 
@@ -59,23 +59,16 @@ impl CameraMatrix {
 
     /// Balanced camera RGB to XYZ relative to D50, (1,1,1) to D50 exactly, for the light whose neutral and
     /// white these are.
+    ///
+    /// The forward matrices do it. A calibration without one gets it from its color matrix and the neutral of
+    /// its own light: so the change of light is made by balancing in camera space, as with a forward matrix,
+    /// and a white balance that is no light (pre-balanced samples, artistic choices) does no harm.
     pub fn to_xyz_d50(&self, neutral: [f64; 3], white: Xy) -> Matrix3 {
         let neutral = Vector3::from(neutral);
         let here = self.at(Temperature::of(white).kelvin);
-        let unbalance = Matrix3::from_diagonal(&neutral);
         let to_reference = here.reference_to_camera.try_inverse().unwrap_or_else(Matrix3::identity);
-        let matrix = match here.forward {
-            Some(forward) => {
-                let reference_neutral = to_reference * neutral;
-                let rebalance = Matrix3::from_diagonal(&reference_neutral.map(|v| 1.0 / v));
-                forward * rebalance * to_reference * unbalance
-            }
-            None => {
-                let camera_to_xyz = here.xyz_to_camera.try_inverse().unwrap_or_else(Matrix3::identity);
-                bradford(white.xyz(), white::D50) * camera_to_xyz * unbalance
-            }
-        };
-        white_preserving(matrix)
+        let rebalance = Matrix3::from_diagonal(&(to_reference * neutral).map(|v| 1.0 / v));
+        white_preserving(here.forward * rebalance * to_reference * Matrix3::from_diagonal(&neutral))
     }
 
     /// The matrices for a light of `kelvin`: between two calibrations by mired, beyond them the nearest.
@@ -103,10 +96,7 @@ impl CameraMatrix {
             low.camera_calibration.unwrap_or_else(identity),
             high.camera_calibration.unwrap_or_else(identity),
         );
-        let forward = match (low.forward_matrix, high.forward_matrix) {
-            (Some(a), Some(b)) => Some(mix(a, b)),
-            (a, b) => a.or(b),
-        };
+        let forward = mix(forward_matrix(low), forward_matrix(high));
         let reference_to_camera = Matrix3::from_diagonal(&self.analog_balance) * calibration;
         Matrices { xyz_to_camera: reference_to_camera * color, reference_to_camera, forward }
     }
@@ -115,7 +105,23 @@ impl CameraMatrix {
 struct Matrices {
     xyz_to_camera: Matrix3,
     reference_to_camera: Matrix3,
-    forward: Option<Matrix3>,
+    forward: Matrix3,
+}
+
+/// The forward matrix of a calibration: its own, or the one that its color matrix implies for its own light (D65
+/// where it names none, as lists of camera matrices have it).
+fn forward_matrix(calibration: &Calibration) -> Matrix3 {
+    if let Some(forward) = calibration.forward_matrix {
+        return white_preserving(forward);
+    }
+    let white = match calibration.kelvin {
+        Some(kelvin) if kelvin < 4000.0 => Temperature { kelvin, duv: 0.0 }.xy(),
+        Some(kelvin) => daylight_xy(kelvin),
+        None => white::D65_XY,
+    };
+    let neutral = calibration.color_matrix * Vector3::from(white.xyz());
+    let camera_to_xyz = calibration.color_matrix.try_inverse().unwrap_or_else(Matrix3::identity);
+    white_preserving(bradford(white.xyz(), white::D50) * camera_to_xyz * Matrix3::from_diagonal(&neutral))
 }
 
 /// The matrix with its rows scaled so that (1,1,1) gives D50 exactly.

@@ -40,7 +40,7 @@ fn decode_named(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Res
             limits: flash_limits(limits),
             ..DecodeOptions::default()
         })
-        .map_err(|e| error(&e))?;
+        .map_err(|e| decode_error(&e, raw.frame_info()))?;
     let mut capture = describe(bytes, container, raw.metadata(), raw.frame_info())?;
     let layout = capture.counts.layout().clone();
     let size = Size { width: frame.width as usize, height: frame.height as usize };
@@ -140,6 +140,16 @@ pub(crate) fn error(e: &flashraw::Error) -> Error {
             let detail = detail.strip_prefix("corrupt file: ").unwrap_or(&detail);
             Error::Damaged { detail: detail.to_owned() }
         }
+    }
+}
+
+/// As [`error`], with the name of the compression that could not be decoded.
+fn decode_error(e: &flashraw::Error, info: &FrameInfo) -> Error {
+    match error(e) {
+        Error::Compression { compression, decoder } => {
+            Error::Compression { compression: format!("{} ({compression})", compression_name(info)), decoder }
+        }
+        other => other,
     }
 }
 
