@@ -10,12 +10,15 @@ use crate::Demosaic;
 
 pub mod bilinear;
 pub mod lmmse;
+pub mod xtrans;
 
 /// A demosaicing method for one sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// Directional LMMSE, for Bayer.
     Lmmse,
+    /// Linear prediction under several models, for X-Trans.
+    XTrans,
     /// Weighted mean of the nearest samples of each colour, for any array.
     Bilinear,
     /// Nothing to interpolate: linear RGB or monochrome.
@@ -29,6 +32,9 @@ impl Method {
             Layout::Rgb | Layout::Monochrome => Some(Self::None),
             Layout::Cfa(cfa) if !cfa.is_rgb() => None,
             Layout::Cfa(cfa) if cfa.is_bayer() && wanted == Demosaic::Best => Some(Self::Lmmse),
+            Layout::Cfa(cfa) if xtrans::phase(cfa).is_some() && wanted == Demosaic::Best => {
+                Some(Self::XTrans)
+            }
             Layout::Cfa(_) => Some(Self::Bilinear),
         }
     }
@@ -37,6 +43,7 @@ impl Method {
     pub fn border(self) -> usize {
         match self {
             Self::Lmmse => lmmse::BORDER,
+            Self::XTrans => xtrans::BORDER,
             Self::Bilinear => bilinear::BORDER,
             Self::None => 0,
         }
@@ -46,6 +53,7 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Self::Lmmse => "directional LMMSE (Zhang and Wu 2005)",
+            Self::XTrans => "kriging under eight models",
             Self::Bilinear => "bilinear",
             Self::None => "none",
         }
@@ -59,6 +67,10 @@ pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize) -> Rgb<Came
     let mut picture = Rgb::black(inner);
     match (method, &mosaic.layout) {
         (Method::Lmmse, Layout::Cfa(cfa)) => lmmse::demosaic(mosaic, cfa, border, &mut picture),
+        (Method::XTrans, Layout::Cfa(cfa)) => match xtrans::phase(cfa) {
+            Some(phase) => xtrans::demosaic(mosaic, phase, border, &mut picture),
+            None => bilinear::demosaic(mosaic, cfa, border, &mut picture),
+        },
         (_, Layout::Cfa(cfa)) => bilinear::demosaic(mosaic, cfa, border, &mut picture),
         (_, layout) => split(mosaic, layout.planes(), border, &mut picture),
     }

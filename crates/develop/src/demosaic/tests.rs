@@ -19,7 +19,9 @@ fn methods() -> Vec<(Cfa, Method)> {
     let bayer = Cfa::parse("RGGB").unwrap();
     let mut all: Vec<(Cfa, Method)> = (0..4).map(|i| (bayer.shifted(i % 2, i / 2), Method::Lmmse)).collect();
     all.push((bayer, Method::Bilinear));
-    all.push((Cfa::parse(X_TRANS).unwrap(), Method::Bilinear));
+    let x_trans = Cfa::parse(X_TRANS).unwrap();
+    all.extend((0..18).map(|i| (x_trans.shifted(i % 6, i / 6), Method::XTrans)));
+    all.push((x_trans, Method::Bilinear));
     all
 }
 

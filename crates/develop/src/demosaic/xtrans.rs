@@ -14,7 +14,7 @@
 
 use std::sync::LazyLock;
 
-use photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
+use photo::{CameraSpace, Cfa, Mosaic, Rgb};
 
 use super::{signed_sqrt, signed_square};
 
@@ -47,9 +47,389 @@ fn colour(x: usize, y: usize) -> usize {
 /// Column and row of the X-Trans array at which `cfa` begins; `None` for any other array.
 pub fn phase(cfa: &Cfa) -> Option<(usize, usize)> {
     let places = (0..PERIOD * PERIOD).map(|i| (i % PERIOD, i / PERIOD));
-    let same = |x: usize, y: usize, (u, v): (usize, usize)| {
-        cfa.at(x, y).plane() == Some(colour(x + u, y + v))
-    };
+    let same =
+        |x: usize, y: usize, (u, v): (usize, usize)| cfa.at(x, y).plane() == Some(colour(x + u, y + v));
     let six = cfa.width() == PERIOD && cfa.height() == PERIOD;
     places.clone().find(|&begin| six && places.clone().all(|(x, y)| same(x, y, begin)))
+}
+
+/// Models of the picture.
+const MODELS: usize = 8;
+/// A number for each model.
+type Each = [f32; MODELS];
+
+/// How unlike two samples are: half the mean square of their difference, up to a factor, is
+/// `d(stretch)^power + share d(colour_stretch)^colour_power`, the second term for equal colours only; for
+/// unequal ones it is a constant that the prediction does not depend on. Equal distances lie on an ellipse of
+/// area pi whose axis along the edges is `stretch` times the other. Fitted to photographs.
+#[derive(Clone, Copy)]
+struct Model {
+    stretch: f64,
+    colour_stretch: f64,
+    /// How much colours change on their own.
+    share: f64,
+    /// Of the distance, in quarters.
+    power: u32,
+    colour_power: u32,
+}
+
+/// Colours that change along with brightness.
+const GREYISH: Model = Model { stretch: 1.7, colour_stretch: 1.4, share: 0.018, power: 6, colour_power: 4 };
+/// Colours that change on their own.
+const COLOURFUL: Model = Model { stretch: 2.5, colour_stretch: 2.8, share: 0.6, power: 6, colour_power: 7 };
+/// Directions of the edges.
+const DIRECTIONS: [(f64, f64); MODELS / 2] = {
+    use std::f64::consts::FRAC_1_SQRT_2 as S;
+    [(1.0, 0.0), (S, S), (0.0, 1.0), (-S, S)]
+};
+/// Variance of each sample's own noise, in the unit of the models: keeps the equations well conditioned.
+const NOISE: f64 = 1e-3;
+
+impl Model {
+    /// Likeness of two samples `dx` columns and `dy` rows apart where edges run along `direction`.
+    fn likeness(&self, direction: (f64, f64), (dx, dy): (isize, isize), same_colour: bool) -> f64 {
+        let (dx, dy) = (dx as f64, dy as f64);
+        let along = direction.0 * dx + direction.1 * dy;
+        let across = direction.0 * dy - direction.1 * dx;
+        let unlike = |stretch: f64, power: u32| {
+            let squared = along * along / stretch + across * across * stretch;
+            // Powers from square roots, which are the same on every machine.
+            let (half, quarter, eighth) =
+                (squared.sqrt(), squared.sqrt().sqrt(), squared.sqrt().sqrt().sqrt());
+            let factor = |bit: u32, root: f64| if power & bit != 0 { root } else { 1.0 };
+            factor(4, half) * factor(2, quarter) * factor(1, eighth)
+        };
+        let colour =
+            if same_colour { self.share * unlike(self.colour_stretch, self.colour_power) } else { 0.0 };
+        -unlike(self.stretch, self.power) - colour
+    }
+}
+
+/// What predicts at one place of the array: weights of the samples of [`reached`], in their order.
+struct Site {
+    /// Colour of the place.
+    own: usize,
+    /// For the two other colours.
+    missing: [Vec<Each>; 2],
+    /// For the error of predicting the place's own sample without itself.
+    error: Vec<Each>,
+}
+
+/// Places of the samples that predict, from the pixel: columns and rows.
+fn reached() -> Vec<(isize, isize)> {
+    let reach = REACH as isize;
+    let square = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+    square.filter(|(dx, dy)| dx * dx + dy * dy <= reach * reach + reach).collect()
+}
+
+/// The sites of the array. It looks the same three columns and three rows on, so three rows have them all.
+static SITES: LazyLock<Vec<Site>> =
+    LazyLock::new(|| (0..PERIOD * PERIOD / 2).map(|i| site(i % PERIOD, i / PERIOD)).collect());
+
+fn site_at(x: usize, y: usize) -> &'static Site {
+    let x = if y % PERIOD < 3 { x } else { x + 3 };
+    &SITES[y % 3 * PERIOD + x % PERIOD]
+}
+
+/// Solves the equations of kriging, every colour's mean being unknown, for column `x` of row `y` of the array.
+fn site(x: usize, y: usize) -> Site {
+    let places = reached();
+    let n = places.len();
+    let beside = |(dx, dy): (isize, isize)| {
+        colour((x + PERIOD).wrapping_add_signed(dx), (y + PERIOD).wrapping_add_signed(dy))
+    };
+    let own = colour(x, y);
+    let others = [(own + 1) % 3, (own + 2) % 3];
+    let mut site = Site {
+        own,
+        missing: [vec![[0.0; MODELS]; n], vec![[0.0; MODELS]; n]],
+        error: vec![[0.0; MODELS]; n],
+    };
+    for number in 0..MODELS {
+        let model = if number < MODELS / 2 { GREYISH } else { COLOURFUL };
+        let direction = DIRECTIONS[number % (MODELS / 2)];
+        let is = |a: usize, b: usize| if a == b { 1.0 } else { 0.0 };
+        // Rows: one for each sample, one for each colour's mean. Columns: the same and three right-hand sides.
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(n + 3);
+        for (i, &place) in places.iter().enumerate() {
+            let c = beside(place);
+            let mut row: Vec<f64> = places
+                .iter()
+                .map(|&(u, v)| model.likeness(direction, (u - place.0, v - place.1), beside((u, v)) == c))
+                .collect();
+            row[i] += NOISE;
+            row.extend([0, 1, 2].map(|mean| is(c, mean)));
+            row.extend(others.map(|other| model.likeness(direction, place, c == other)));
+            row.push(if place == (0, 0) { 1.0 } else { 0.0 });
+            rows.push(row);
+        }
+        for mean in 0..3 {
+            let mut row: Vec<f64> = places.iter().map(|&place| is(beside(place), mean)).collect();
+            row.extend([0.0; 3]);
+            row.extend(others.map(|other| is(other, mean)));
+            row.push(0.0);
+            rows.push(row);
+        }
+        solve(&mut rows);
+        // The error is the solution for the unit vector of the own sample over its own coefficient (Dubrule).
+        let whole = rows[places.iter().position(|&place| place == (0, 0)).unwrap_or(0)][n + 5];
+        for (i, row) in rows.iter().take(n).enumerate() {
+            site.missing[0][i][number] = row[n + 3] as f32;
+            site.missing[1][i][number] = row[n + 4] as f32;
+            site.error[i][number] = (row[n + 5] / whole) as f32;
+        }
+    }
+    site
+}
+
+/// Solves a system of linear equations by elimination: `rows` are those of the matrix, each followed by its
+/// right-hand sides, which become the solutions.
+fn solve(rows: &mut [Vec<f64>]) {
+    let n = rows.len();
+    for pivot in 0..n {
+        let size = |rows: &[Vec<f64>], i: usize| rows[i][pivot].abs();
+        let largest = (pivot..n).fold(pivot, |a, b| if size(rows, b) > size(rows, a) { b } else { a });
+        rows.swap(pivot, largest);
+        let (done, below) = rows.split_at_mut(pivot + 1);
+        let base = &mut done[pivot];
+        let scale = 1.0 / base[pivot];
+        for v in &mut base[pivot..] {
+            *v *= scale;
+        }
+        for row in below {
+            eliminate(row, base, pivot);
+        }
+    }
+    // Backwards, on the right-hand sides alone.
+    for pivot in (0..n).rev() {
+        let (above, base) = rows.split_at_mut(pivot);
+        for row in above {
+            let factor = row[pivot];
+            for (v, b) in row[n..].iter_mut().zip(&base[0][n..]) {
+                *v -= factor * b;
+            }
+        }
+    }
+}
+
+fn eliminate(row: &mut [f64], base: &[f64], pivot: usize) {
+    let factor = row[pivot];
+    for (v, b) in row[pivot..].iter_mut().zip(&base[pivot..]) {
+        *v -= factor * b;
+    }
+}
+
+/// Pixels that are worked on at once: of one column of the array, so [`PERIOD`] columns apart.
+const LANES: usize = 8;
+type Lanes = [f32; LANES];
+
+/// A row of pixels taken apart by columns of the array: part `k` has columns `k`, `k + 6`, `k + 12` and so on,
+/// after one pixel of nothing and before others.
+#[derive(Clone, Copy)]
+struct Parts {
+    /// Pixels of a part that are worked on: a multiple of [`LANES`].
+    pixels: usize,
+}
+
+impl Parts {
+    fn of(width: usize) -> Self {
+        Self { pixels: width.div_ceil(PERIOD).next_multiple_of(LANES) }
+    }
+
+    /// Floats of a part.
+    fn length(self) -> usize {
+        self.pixels + 2
+    }
+
+    /// Floats of a row.
+    fn row(self) -> usize {
+        PERIOD * self.length()
+    }
+
+    /// Where in a row the pixel `dx` columns from pixel 0 of part `k` is, `|dx| < 6`.
+    fn index(self, k: usize, dx: isize) -> usize {
+        let column = (k + PERIOD).wrapping_add_signed(dx);
+        column % PERIOD * self.length() + column / PERIOD
+    }
+}
+
+/// Demosaics the inner part of an X-Trans mosaic whose array begins at `phase`.
+pub fn demosaic(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut Rgb<CameraSpace>) {
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || run(mosaic, phase, border, picture),
+    );
+}
+
+#[inline(always)]
+fn run(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut Rgb<CameraSpace>) {
+    let (width, height) = (mosaic.size.width, mosaic.size.height);
+    let parts = Parts::of(width);
+    let roots = take_apart(&mosaic.samples, width, parts);
+    // Where the samples that predict are, from the first of a row `REACH` above, for each part.
+    let places = reached();
+    let taps: [Vec<usize>; PERIOD] = std::array::from_fn(|k| {
+        let tap =
+            |&(dx, dy): &(isize, isize)| REACH.wrapping_add_signed(dy) * parts.row() + parts.index(k, dx);
+        places.iter().map(tap).collect()
+    });
+    let site = |k: usize, y: usize| site_at(k + phase.0, y + phase.1);
+
+    let size = picture.size();
+    let [red, green, blue] = picture.planes_mut();
+    // Squared errors of one row, for each model; and of the last rows, smoothed along them.
+    let mut errors = vec![0f32; MODELS * parts.row()];
+    let mut smoothed = vec![vec![0f32; MODELS * parts.row()]; 2 * HALF + 1];
+    let mut colours = [(); 3].map(|()| vec![0f32; parts.row()]);
+    for y in border - HALF..height - border + HALF {
+        let around = &roots[(y - REACH) * parts.row()..];
+        for (k, taps) in taps.iter().enumerate() {
+            let site = site(k, y);
+            for j in (0..parts.pixels).step_by(LANES) {
+                let error = predict(&around[j..], taps, &site.error);
+                for (number, error) in error.iter().enumerate() {
+                    let at = number * parts.row() + parts.index(k, 0) + j;
+                    errors[at..at + LANES].copy_from_slice(&error.map(|e| e * e));
+                }
+            }
+        }
+        let latest = smoothed.len() - 1;
+        smoothed.rotate_left(1);
+        for (out, errors) in
+            smoothed[latest].chunks_exact_mut(parts.row()).zip(errors.chunks_exact(parts.row()))
+        {
+            smooth(out, errors, parts);
+        }
+        if y < border + HALF {
+            continue;
+        }
+        let y = y - HALF;
+        let around = &roots[(y - REACH) * parts.row()..];
+        for (k, taps) in taps.iter().enumerate() {
+            let site = site(k, y);
+            for j in (0..parts.pixels).step_by(LANES) {
+                let at = parts.index(k, 0) + j;
+                let shares = shares(&smoothed, at, parts);
+                let mut put = |c: usize, root: Lanes| {
+                    colours[c][at..at + LANES].copy_from_slice(&root.map(signed_square));
+                };
+                for (i, weights) in site.missing.iter().enumerate() {
+                    put((site.own + 1 + i) % 3, join(&predict(&around[j..], taps, weights), &shares));
+                }
+                let own = &around[REACH * parts.row() + at..][..LANES];
+                put(site.own, std::array::from_fn(|l| own[l]));
+            }
+        }
+        let line = (y - border) * size.width..(y - border + 1) * size.width;
+        for (plane, colour) in [&mut *red, &mut *green, &mut *blue].into_iter().zip(&colours) {
+            put_together(&mut plane[line.clone()], colour, border, parts);
+        }
+    }
+}
+
+/// Signed square roots of samples, each row taken apart.
+#[inline(always)]
+fn take_apart(samples: &[f32], width: usize, parts: Parts) -> Vec<f32> {
+    let mut roots = vec![0f32; samples.len() / width * parts.row()];
+    for (row, out) in samples.chunks_exact(width).zip(roots.chunks_exact_mut(parts.row())) {
+        for (k, out) in out.chunks_exact_mut(parts.length()).enumerate() {
+            for (out, v) in out[1..].iter_mut().zip(row[k.min(width)..].iter().step_by(PERIOD)) {
+                *out = signed_sqrt(*v);
+            }
+        }
+    }
+    roots
+}
+
+/// Puts a row together again, from column `first` on.
+#[inline(always)]
+fn put_together(out: &mut [f32], row: &[f32], first: usize, parts: Parts) {
+    for k in 0..PERIOD {
+        let column = first + k;
+        let part = &row[parts.index(column % PERIOD, 0) + column / PERIOD..];
+        for (out, v) in out.iter_mut().skip(k).step_by(PERIOD).zip(part) {
+            *out = *v;
+        }
+    }
+}
+
+/// Weighted sums of samples, for each model.
+#[inline(always)]
+fn predict(samples: &[f32], taps: &[usize], weights: &[Each]) -> [Lanes; MODELS] {
+    let mut sums = [[0f32; LANES]; MODELS];
+    for (tap, weights) in taps.iter().zip(weights) {
+        let samples = &samples[*tap..*tap + LANES];
+        for (sum, weight) in sums.iter_mut().zip(weights) {
+            for l in 0..LANES {
+                sum[l] += weight * samples[l];
+            }
+        }
+    }
+    sums
+}
+
+/// Smooths a row that is taken apart.
+#[inline(always)]
+fn smooth(out: &mut [f32], row: &[f32], parts: Parts) {
+    for k in 0..PERIOD {
+        let shifts: [&[f32]; 2 * HALF + 1] =
+            std::array::from_fn(|i| &row[parts.index(k, i as isize - HALF as isize)..][..parts.pixels]);
+        let out = &mut out[parts.index(k, 0)..][..parts.pixels];
+        for (j, out) in out.iter_mut().enumerate() {
+            let mut sum = 0.0;
+            for i in 0..2 * HALF + 1 {
+                sum += WINDOW[i] * shifts[i][j];
+            }
+            *out = sum;
+        }
+    }
+}
+
+/// Shares of the models in the result, from the smoothed errors at `at` of nine rows: the inverse of the error
+/// to the power of 16, so nearly a choice.
+#[inline(always)]
+fn shares(rows: &[Vec<f32>], at: usize, parts: Parts) -> [Lanes; MODELS] {
+    let mut errors = [[TINY; LANES]; MODELS];
+    for (number, errors) in errors.iter_mut().enumerate() {
+        let at = number * parts.row() + at;
+        for (row, weight) in rows.iter().zip(WINDOW) {
+            let row = &row[at..at + LANES];
+            for l in 0..LANES {
+                errors[l] += weight * row[l];
+            }
+        }
+    }
+    let mut least = errors[0];
+    for errors in &errors[1..] {
+        for l in 0..LANES {
+            least[l] = if errors[l] < least[l] { errors[l] } else { least[l] };
+        }
+    }
+    let mut total = [0f32; LANES];
+    for errors in &mut errors {
+        for l in 0..LANES {
+            let ratio = least[l] / errors[l];
+            let second = ratio * ratio;
+            let fourth = second * second;
+            errors[l] = fourth * fourth;
+            total[l] += errors[l];
+        }
+    }
+    for errors in &mut errors {
+        for l in 0..LANES {
+            errors[l] /= total[l];
+        }
+    }
+    errors
+}
+
+#[inline(always)]
+fn join(predictions: &[Lanes; MODELS], shares: &[Lanes; MODELS]) -> Lanes {
+    let mut sum = [0f32; LANES];
+    for (prediction, share) in predictions.iter().zip(shares) {
+        for l in 0..LANES {
+            sum[l] += prediction[l] * share[l];
+        }
+    }
+    sum
 }
