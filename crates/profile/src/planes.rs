@@ -156,13 +156,18 @@ fn sqrt(v: f32) -> f32 {
     v.max(0.0).sqrt()
 }
 
-/// Cube root of a value of at least 0; negative values count as 0. A guess from the exponent, then Halley's
-/// iteration twice: within 2 units in the last place for normal numbers.
+/// Cube root of a value of at least 0; negative values count as 0. A guess from the bits (Warren, "Hacker's
+/// Delight", 11-2), then Halley's iteration twice: within 2 units in the last place for normal numbers.
 #[inline(always)]
 fn cbrt(v: f32) -> f32 {
     let v = v.max(0.0);
-    // A third of the bits is a third of the exponent; the constant puts the bias back (2/3 of 127 << 23, tuned).
-    let guess = f32::from_bits((v.to_bits() as f32 * (1.0 / 3.0)) as u32 + 709_958_130);
+    // A third of the bits is a third of the exponent: 1/4 + 1/16, and that times 17/16 and 257/256. The constant
+    // puts two thirds of the exponent's bias back.
+    let bits = v.to_bits();
+    let third = (bits >> 2) + (bits >> 4);
+    let third = third + (third >> 4);
+    let third = third + (third >> 8);
+    let guess = f32::from_bits(third + 0x2a51_37a0);
     let halley = |y: f32| {
         let y3 = y * y * y;
         y * ((y3 + 2.0 * v) / (2.0 * y3 + v))

@@ -7,7 +7,7 @@
 
 use photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
 
-use super::{signed_sqrt, signed_square};
+use super::{signed_sqrt, signed_square, vectorised};
 
 /// Pixels around the result that the method looks at: 2 for the interpolation, 4 for its low-pass, 4 for the
 /// statistics, 1 for red and blue.
@@ -32,7 +32,7 @@ const TINY: f32 = 1e-30;
 
 /// Demosaics the inner part of a Bayer mosaic.
 pub fn demosaic(mosaic: &Mosaic<f32>, cfa: &Cfa, border: usize, picture: &mut Rgb<CameraSpace>) {
-    pulp::Arch::new().dispatch(
+    vectorised(
         #[inline(always)]
         || run(mosaic, cfa, border, picture),
     );

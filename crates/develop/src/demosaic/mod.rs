@@ -91,6 +91,24 @@ fn split(mosaic: &Mosaic<f32>, planes: usize, border: usize, picture: &mut Rgb<C
     }
 }
 
+/// Runs `work` compiled for the vectors of this processor.
+///
+/// A closure handed to `pulp` itself is called by `FnOnce::call_once`, for most closures a shim that is compiled
+/// for the least processor and too large to be inlined; called by `FnMut` there is none. `work` must be
+/// `#[inline(always)]`, and so must be what it calls.
+#[inline(always)]
+pub(crate) fn vectorised(work: impl FnMut()) {
+    struct Work<F>(F);
+    impl<F: FnMut()> pulp::WithSimd for Work<F> {
+        type Output = ();
+        #[inline(always)]
+        fn with_simd<S: pulp::Simd>(mut self, _: S) {
+            (self.0)();
+        }
+    }
+    pulp::Arch::new().dispatch(Work(work));
+}
+
 /// Square root that keeps the sign.
 #[inline(always)]
 pub(crate) fn signed_sqrt(v: f32) -> f32 {

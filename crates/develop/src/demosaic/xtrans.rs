@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 
 use photo::{CameraSpace, Cfa, Mosaic, Rgb};
 
-use super::{signed_sqrt, signed_square};
+use super::{signed_sqrt, signed_square, vectorised};
 
 /// Pixels around the result that the method looks at: [`REACH`] for the prediction, [`HALF`] for its errors.
 pub const BORDER: usize = REACH + HALF;
@@ -255,7 +255,7 @@ impl Parts {
 
 /// Demosaics the inner part of an X-Trans mosaic whose array begins at `phase`.
 pub fn demosaic(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut Rgb<CameraSpace>) {
-    pulp::Arch::new().dispatch(
+    vectorised(
         #[inline(always)]
         || run(mosaic, phase, border, picture),
     );
@@ -358,10 +358,10 @@ fn put_together(out: &mut [f32], row: &[f32], first: usize, parts: Parts) {
 fn predict(samples: &[f32], taps: &[usize], weights: &[Each]) -> [Lanes; MODELS] {
     let mut sums = [[0f32; LANES]; MODELS];
     for (tap, weights) in taps.iter().zip(weights) {
-        let samples = &samples[*tap..*tap + LANES];
-        for (sum, weight) in sums.iter_mut().zip(weights) {
+        let samples: Lanes = std::array::from_fn(|l| samples[*tap..*tap + LANES][l]);
+        for number in 0..MODELS {
             for l in 0..LANES {
-                sum[l] += weight * samples[l];
+                sums[number][l] += weights[number] * samples[l];
             }
         }
     }

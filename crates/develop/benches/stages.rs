@@ -1,0 +1,152 @@
+//! Every stage on one thread, in megapixels per second (criterion shows Melem/s).
+//!
+//! `cargo bench -p darkroot-develop`; one stage: `cargo bench -p darkroot-develop -- demosaic`.
+
+use std::hint::black_box;
+
+use colour::{RgbSpace, TransferCurve};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use develop::demosaic::Method;
+use develop::gamut::Primaries;
+use develop::highlights::Treatment;
+use develop::level::Levels;
+use develop::tone::Curve;
+use develop::transfer::Encoder;
+use develop::{Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer};
+use photo::{
+    BlackLevel, Camera, CameraSpace, Capture, Cfa, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Rgb,
+    Size, Source, WhiteLevel,
+};
+use profile::{Model, Order, PlaneModel};
+
+const SIZE: Size = Size { width: 1024, height: 512 };
+const BORDER: usize = 16;
+
+/// Light with smooth shading, edges and noise.
+fn light(i: usize, width: usize) -> f32 {
+    let (x, y) = (i % width, i / width);
+    let edge = if (x / 37 + y / 23) % 3 == 0 { 0.5 } else { 0.1 };
+    edge + 0.2 * (x as f32 / width as f32) + ((x * 7919 + y * 104_729) % 1000) as f32 * 2e-5
+}
+
+fn mosaic(letters: &str) -> Mosaic<f32> {
+    let size = Size { width: SIZE.width + 2 * BORDER, height: SIZE.height + 2 * BORDER };
+    let samples = (0..size.area()).map(|i| light(i, size.width)).collect();
+    Mosaic { size, layout: Layout::Cfa(Cfa::parse(letters).expect("a square array")), samples }
+}
+
+fn planes<S>() -> Rgb<S> {
+    let plane = |k: f32| (0..SIZE.area()).map(|i| light(i, SIZE.width) * k).collect();
+    Rgb::from_planes(SIZE, [plane(0.8), plane(1.0), plane(0.5)]).expect("planes of that size")
+}
+
+fn capture() -> Capture {
+    let samples = (0..SIZE.area()).map(|i| (light(i, SIZE.width) * 15000.0) as u16).collect();
+    let layout = Layout::Cfa(Cfa::parse("RGGB").expect("a square array"));
+    Capture {
+        camera: Camera::default(),
+        counts: Counts::U16(Mosaic { size: SIZE, layout, samples }),
+        active_area: Rect::full(SIZE),
+        default_crop: Rect::full(SIZE),
+        orientation: Orientation::Upright,
+        pixel_aspect: 1.0,
+        black: BlackLevel::uniform(512.0),
+        white: WhiteLevel([16383.0; 3]),
+        as_shot: None,
+        balance_applied: false,
+        calibrations: Vec::new(),
+        analog_balance: [1.0; 3],
+        baseline_exposure: 0.0,
+        mosaic_corrections: Vec::new(),
+        picture_corrections: Vec::new(),
+        metadata: Metadata::default(),
+        source: Source {
+            format: String::new(),
+            compression: String::new(),
+            bits: 14,
+            decoder: String::new(),
+        },
+        notes: Vec::new(),
+    }
+}
+
+fn model(order: Order) -> PlaneModel {
+    let terms = order.terms().len();
+    let coefficients = (0..terms).map(|i| [0.5, 0.4, 0.3].map(|c| c / (1.0 + i as f64))).collect();
+    PlaneModel::new(&Model::new(order, coefficients).expect("a coefficient for each term"))
+}
+
+fn stages(c: &mut Criterion) {
+    let mut group = c.benchmark_group("stages");
+    group.throughput(Throughput::Elements(SIZE.area() as u64));
+    group.sample_size(20);
+
+    let capture = capture();
+    let levels = Levels::new(&capture);
+    let Counts::U16(counts) = &capture.counts else { return };
+    let mut row = vec![0f32; SIZE.width];
+    group.bench_function("level", |b| {
+        b.iter(|| {
+            for (y, stored) in counts.samples.chunks_exact(SIZE.width).enumerate() {
+                levels.row(stored, 0, y, &mut row);
+                black_box(&row);
+            }
+        });
+    });
+    let mut samples = mosaic("RGGB");
+    let layout = samples.layout.clone();
+    group.bench_function("balance", |b| {
+        b.iter(|| {
+            for y in 0..SIZE.height {
+                let row = &mut samples.samples[y * SIZE.width..][..SIZE.width];
+                balance::row(row, &layout, [1.0, 1.000_001, 1.0], 0, y);
+            }
+        });
+    });
+    let treatment = Treatment::Rebuild { limits: [0.62, 0.6, 0.61], offsets: [0.0; 3] };
+    group.bench_function("highlights", |b| {
+        b.iter_batched(
+            || mosaic("RGGB"),
+            |mut m| {
+                highlights::treat(&mut m, &treatment);
+                m
+            },
+            BatchSize::LargeInput,
+        );
+    });
+    for (name, letters, wanted) in [
+        ("demosaic Bayer", "RGGB", Demosaic::Best),
+        ("demosaic Bayer, bilinear", "RGGB", Demosaic::Bilinear),
+        ("demosaic X-Trans", "GBGGRG RGRBGB GBGGRG GRGGBG BGBRGR GRGGBG", Demosaic::Best),
+    ] {
+        let mosaic = mosaic(letters);
+        let Some(method) = Method::of(&mosaic.layout, wanted) else { continue };
+        group.bench_function(name, |b| b.iter(|| demosaic::demosaic(black_box(&mosaic), method, BORDER)));
+    }
+    for order in [Order::One, Order::Two, Order::Three, Order::Four] {
+        let model = model(order);
+        group.bench_function(format!("correct, order {}", order.number()), |b| {
+            b.iter_batched(planes::<CameraSpace>, |p| correct::correct(p, &model), BatchSize::LargeInput);
+        });
+    }
+    group.bench_function("exposure", |b| {
+        b.iter_batched(planes, |p| exposure::expose(p, 1.5), BatchSize::LargeInput);
+    });
+    if let Some(curve) = Curve::of(Look::Neutral) {
+        group.bench_function("tone", |b| {
+            b.iter_batched(planes, |p| tone::tone(p, curve), BatchSize::LargeInput);
+        });
+    }
+    let primaries = Primaries::new(&RgbSpace::SRGB);
+    group.bench_function("gamut", |b| {
+        b.iter_batched(planes, |p| gamut::fit(p, &primaries), BatchSize::LargeInput);
+    });
+    let encoder = Encoder::new(TransferCurve::Srgb);
+    group.bench_function("transfer", |b| {
+        b.iter_batched(planes, |p| transfer::encode(p, &encoder), BatchSize::LargeInput);
+    });
+    group.finish();
+}
+
+criterion_group!(benches, stages);
+criterion_main!(benches);
