@@ -142,6 +142,10 @@ fn words(i: &Inspection) -> String {
     line("lens", shot.lens.clone().unwrap_or_default());
     line("artist", shot.artist.clone().unwrap_or_default());
     line("copyright", shot.copyright.clone().unwrap_or_default());
+    if i.saturation.iter().any(|s| *s < 1.0) {
+        let [r, g, b] = i.saturation.map(|s| format!("{:.1} %", s * 100.0));
+        line("clips at", format!("red {r}, green {g}, blue {b} of the white level"));
+    }
     let [r, g, b] = i.clipped.map(|share| format!("{:.3} %", share * 100.0));
     line("clipped", format!("red {r}, green {g}, blue {b}"));
     if let (Some(hash), Some(mean)) = (&i.samples_hash, i.samples_mean) {

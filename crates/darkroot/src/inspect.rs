@@ -59,6 +59,8 @@ pub struct Inspection {
     pub profile: Option<String>,
     /// Exposure, lens and date as written by the camera.
     pub shot: Shot,
+    /// Share of the white level at which red, green and blue clip in this picture (1 when nothing else shows).
+    pub saturation: [f32; 3],
     /// Share of clipped samples of red, green and blue, 0..=1.
     pub clipped: [f64; 3],
     /// Number of samples by square root of light, 64 bins, for red, green and blue.
@@ -117,7 +119,7 @@ pub fn inspect(
     let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     drop(bytes);
-    let Survey { clipped, histogram, .. } = develop::survey(&capture);
+    let Survey { saturation, clipped, histogram, .. } = develop::survey(&capture);
     let neutral = match capture.as_shot {
         Some(AsShot::Neutral(n)) => Some(n),
         Some(AsShot::White(xy)) => CameraMatrix::of(&capture).and_then(|m| m.neutral_of(xy)),
@@ -157,6 +159,7 @@ pub fn inspect(
         corrections: [capture.mosaic_corrections.len(), capture.picture_corrections.len()],
         profile: store.find(&capture.camera).map(|f| format!("{} ({})", f.profile.camera().name(), f.place)),
         shot: shot(&capture.metadata),
+        saturation,
         clipped,
         histogram: histogram.iter().map(|h| h.to_vec()).collect(),
         samples_hash: hash,
@@ -207,7 +210,8 @@ fn calibration(c: &Calibration) -> CalibrationFacts {
 
 fn shot(metadata: &Metadata) -> Shot {
     let text = |directory, tag| metadata.text(directory, tag).map(str::to_owned);
-    let number = |tag| metadata.number(Directory::Exif, tag);
+    // Some programs write 0 for what they do not know.
+    let number = |tag| metadata.number(Directory::Exif, tag).filter(|v| *v > 0.0);
     Shot {
         date: text(Directory::Exif, tag::DATE_TIME_ORIGINAL),
         lens: text(Directory::Exif, tag::LENS_MODEL),

@@ -26,8 +26,11 @@ pub enum Treatment {
         /// Typical difference between a channel and the mean of the two others near clipped areas.
         offsets: [f32; 3],
     },
-    /// Cut every channel at the lowest limit, 1.
-    Clip,
+    /// Cut every channel where the first one clips.
+    Clip {
+        /// Balanced value at which the first channel clips.
+        limit: f32,
+    },
     /// Leave the samples alone.
     Keep,
 }
@@ -36,9 +39,9 @@ pub enum Treatment {
 pub fn treat(mosaic: &mut Mosaic<f32>, treatment: &Treatment) {
     match (treatment, &mosaic.layout) {
         (Treatment::Keep, _) | (_, Layout::Monochrome) => {}
-        (Treatment::Clip, _) => {
+        (Treatment::Clip { limit }, _) => {
             for v in &mut mosaic.samples {
-                *v = v.min(1.0);
+                *v = v.min(*limit);
             }
         }
         (Treatment::Rebuild { limits, offsets }, Layout::Cfa(cfa)) => {

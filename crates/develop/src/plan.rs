@@ -139,10 +139,14 @@ pub fn plan(capture: &Capture, profile: Option<&Profile>, recipe: &Recipe) -> Re
         // A measurement must not contain what was guessed.
         Highlights::Rebuild if linear_look => Treatment::Keep,
         Highlights::Rebuild => {
-            let survey = seen.get_or_insert_with(|| survey::look(capture, &levels, capture.active_area));
-            Treatment::Rebuild { limits: multipliers, offsets: offsets(survey, multipliers) }
+            let survey = seen.get_or_insert_with(|| survey::whole(capture, &levels));
+            Treatment::Rebuild { limits: limits(survey, multipliers), offsets: offsets(survey, multipliers) }
         }
-        Highlights::Clip => Treatment::Clip,
+        Highlights::Clip => {
+            let survey = seen.get_or_insert_with(|| survey::whole(capture, &levels));
+            let lowest = limits(survey, multipliers).iter().fold(f32::MAX, |a, &b| a.min(b));
+            Treatment::Clip { limit: lowest }
+        }
         Highlights::Keep => Treatment::Keep,
     };
     let mut stops = recipe.exposure.stops;
@@ -150,7 +154,7 @@ pub fn plan(capture: &Capture, profile: Option<&Profile>, recipe: &Recipe) -> Re
         stops += capture.baseline_exposure;
     }
     if recipe.exposure.auto {
-        let survey = seen.get_or_insert_with(|| survey::look(capture, &levels, capture.active_area));
+        let survey = seen.get_or_insert_with(|| survey::whole(capture, &levels));
         stops += auto_exposure(survey, &model, multipliers)
             - if linear_look { 0.0 } else { capture.baseline_exposure };
     }
@@ -215,7 +219,7 @@ fn neutral(
     };
     let of_white = |xy: Xy| matrix.and_then(|m| m.neutral_of(xy)).map(stored).ok_or(Error::NoMatrix);
     let mut estimated = || {
-        let survey = seen.get_or_insert_with(|| survey::look(capture, levels, capture.active_area));
+        let survey = seen.get_or_insert_with(|| survey::whole(capture, levels));
         camera_white::estimate(survey, matrix)
     };
     match recipe.balance {
@@ -336,6 +340,11 @@ fn colours(
             (Colours::Assumed, assumed)
         }
     }
+}
+
+/// Balanced value at which each channel clips.
+fn limits(survey: &Survey, multipliers: [f32; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|c| multipliers[c] * survey.saturation[c])
 }
 
 /// Typical difference between a channel and the mean of the two others, balanced, where the picture begins to

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::corrections::{self, Run, is_supported};
 use crate::highlights::CLIPPED;
 use crate::level::Levels;
+use crate::saturation::saturation;
 
 /// Bins of a histogram; bin i holds light from (i / BINS)^2 to ((i + 1) / BINS)^2 of saturation.
 pub const BINS: usize = 64;
@@ -29,6 +30,8 @@ pub struct Survey {
     pub columns: usize,
     /// All blocks, row by row.
     pub blocks: Vec<Block>,
+    /// Share of the white level at which each channel clips.
+    pub saturation: [f32; 3],
     /// Share of clipped samples of each channel, 0..=1.
     pub clipped: [f64; 3],
     /// Number of samples by square root of light, for each channel.
@@ -37,13 +40,16 @@ pub struct Survey {
 
 /// Looks at the active area of a capture.
 pub fn survey(capture: &Capture) -> Survey {
-    let levels = Levels::new(capture);
-    look(capture, &levels, capture.active_area)
+    whole(capture, &Levels::new(capture))
+}
+
+pub(crate) fn whole(capture: &Capture, levels: &Levels) -> Survey {
+    look(capture, levels, saturation(capture, levels), capture.active_area)
 }
 
 /// Mean linear light of each channel in a rectangle of the frame (inside the active area).
 pub(crate) fn mean(capture: &Capture, levels: &Levels, rect: Rect) -> [f64; 3] {
-    let seen = look(capture, levels, rect);
+    let seen = look(capture, levels, [1.0; 3], rect);
     let count = seen.blocks.len().max(1) as f64;
     [0, 1, 2].map(|c| seen.blocks.iter().map(|b| f64::from(b.mean[c])).sum::<f64>() / count)
 }
@@ -55,10 +61,10 @@ struct Strip {
     histogram: [[u64; BINS]; 3],
 }
 
-pub(crate) fn look(capture: &Capture, levels: &Levels, area: Rect) -> Survey {
+fn look(capture: &Capture, levels: &Levels, saturation: [f32; 3], area: Rect) -> Survey {
     match &capture.counts {
-        Counts::U16(counts) => look_at(capture, counts, levels, area),
-        Counts::F32(counts) => look_at(capture, counts, levels, area),
+        Counts::U16(counts) => look_at(capture, counts, levels, saturation, area),
+        Counts::F32(counts) => look_at(capture, counts, levels, saturation, area),
     }
 }
 
@@ -66,6 +72,7 @@ fn look_at<T: Copy + Into<f32> + Sync>(
     capture: &Capture,
     counts: &Mosaic<T>,
     levels: &Levels,
+    saturation: [f32; 3],
     area: Rect,
 ) -> Survey {
     let period = match &counts.layout {
@@ -81,13 +88,14 @@ fn look_at<T: Copy + Into<f32> + Sync>(
         .into_par_iter()
         .map(|row| {
             let place = Rect { x: area.x, y: area.y + row * side, width: columns * side, height: side };
-            strip(capture, counts, levels, &supported, place)
+            strip(capture, counts, levels, &supported, saturation, place)
         })
         .collect();
 
     let mut survey = Survey {
         columns,
         blocks: Vec::with_capacity(columns * rows),
+        saturation,
         clipped: [0.0; 3],
         histogram: [[0; BINS]; 3],
     };
@@ -111,6 +119,7 @@ fn strip<T: Copy + Into<f32>>(
     counts: &Mosaic<T>,
     levels: &Levels,
     supported: &[photo::Correction],
+    saturation: [f32; 3],
     place: Rect,
 ) -> Strip {
     let (planes, side, area) = (counts.layout.planes(), place.height, capture.active_area);
@@ -134,7 +143,7 @@ fn strip<T: Copy + Into<f32>>(
                 numbers[block][c] += 1.0;
                 let bin = (v.clamp(0.0, 1.0).sqrt() * BINS as f32) as usize;
                 strip.histogram[c][bin.min(BINS - 1)] += 1;
-                if v >= CLIPPED {
+                if v >= CLIPPED * saturation[c] {
                     strip.blocks[block].clipped[c] = true;
                     strip.clipped[c] += 1;
                 }

@@ -90,8 +90,8 @@ fn embedded_jpeg<'a>(bytes: &'a [u8], meta: &RawMetadata) -> Option<&'a [u8]> {
 fn value(value: &ExifValue) -> Option<Value> {
     let value = match value {
         ExifValue::Ascii(lines) => {
-            let text: Vec<_> = lines.iter().map(|l| String::from_utf8_lossy(l)).collect();
-            let text = text.join("; ").trim_matches(['\0', ' ']).to_owned();
+            let lines = lines.iter().map(|l| String::from_utf8_lossy(l).trim_matches(['\0', ' ']).to_owned());
+            let text = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
             return (!text.is_empty() && text.len() <= MAX_TEXT).then_some(Value::Text(text));
         }
         ExifValue::Byte(v) => Value::Bytes(v.clone()),

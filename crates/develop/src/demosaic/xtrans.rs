@@ -26,7 +26,7 @@ const REACH: usize = 4;
 /// Half the width of the window of the errors.
 const HALF: usize = 4;
 /// Weights of the errors by rows and by columns away: a triangle.
-const WINDOW: [f32; 2 * HALF + 1] = [0.04, 0.08, 0.12, 0.16, 0.2, 0.16, 0.12, 0.08, 0.04];
+const WINDOW: [f32; HALF + 1] = [0.04, 0.08, 0.12, 0.16, 0.2];
 /// Keeps quotients of vanishing errors finite; far below the square of any sample.
 const TINY: f32 = 1e-30;
 
@@ -303,18 +303,23 @@ fn run(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut
         if y < border + HALF {
             continue;
         }
+        window(&mut errors, std::array::from_fn(|i| &smoothed[i][..]));
+        share(&mut errors, parts.row());
         let y = y - HALF;
         let around = &roots[(y - REACH) * parts.row()..];
         for (k, taps) in taps.iter().enumerate() {
             let site = site(k, y);
             for j in (0..parts.pixels).step_by(LANES) {
                 let at = parts.index(k, 0) + j;
-                let shares = shares(&smoothed, at, parts);
+                let shares = &errors[at..];
                 let mut put = |c: usize, root: Lanes| {
                     colours[c][at..at + LANES].copy_from_slice(&root.map(signed_square));
                 };
                 for (i, weights) in site.missing.iter().enumerate() {
-                    put((site.own + 1 + i) % 3, join(&predict(&around[j..], taps, weights), &shares));
+                    put(
+                        (site.own + 1 + i) % 3,
+                        join(&predict(&around[j..], taps, weights), shares, parts.row()),
+                    );
                 }
                 let own = &around[REACH * parts.row() + at..][..LANES];
                 put(site.own, std::array::from_fn(|l| own[l]));
@@ -372,63 +377,59 @@ fn predict(samples: &[f32], taps: &[usize], weights: &[Each]) -> [Lanes; MODELS]
 #[inline(always)]
 fn smooth(out: &mut [f32], row: &[f32], parts: Parts) {
     for k in 0..PERIOD {
-        let shifts: [&[f32]; 2 * HALF + 1] =
+        let shifts =
             std::array::from_fn(|i| &row[parts.index(k, i as isize - HALF as isize)..][..parts.pixels]);
-        let out = &mut out[parts.index(k, 0)..][..parts.pixels];
-        for (j, out) in out.iter_mut().enumerate() {
-            let mut sum = 0.0;
-            for i in 0..2 * HALF + 1 {
-                sum += WINDOW[i] * shifts[i][j];
-            }
-            *out = sum;
-        }
+        window(&mut out[parts.index(k, 0)..][..parts.pixels], shifts);
     }
 }
 
-/// Shares of the models in the result, from the smoothed errors at `at` of nine rows: the inverse of the error
-/// to the power of 16, so nearly a choice.
 #[inline(always)]
-fn shares(rows: &[Vec<f32>], at: usize, parts: Parts) -> [Lanes; MODELS] {
-    let mut errors = [[TINY; LANES]; MODELS];
-    for (number, errors) in errors.iter_mut().enumerate() {
-        let at = number * parts.row() + at;
-        for (row, weight) in rows.iter().zip(WINDOW) {
-            let row = &row[at..at + LANES];
-            for l in 0..LANES {
-                errors[l] += weight * row[l];
-            }
-        }
+fn window(out: &mut [f32], s: [&[f32]; 2 * HALF + 1]) {
+    let n = out.len();
+    let s = s.map(|s| &s[..n]);
+    for i in 0..n {
+        out[i] = WINDOW[0] * (s[0][i] + s[8][i])
+            + WINDOW[1] * (s[1][i] + s[7][i])
+            + WINDOW[2] * (s[2][i] + s[6][i])
+            + WINDOW[3] * (s[3][i] + s[5][i])
+            + WINDOW[4] * s[4][i];
     }
-    let mut least = errors[0];
-    for errors in &errors[1..] {
-        for l in 0..LANES {
-            least[l] = if errors[l] < least[l] { errors[l] } else { least[l] };
+}
+
+/// Turns mean square errors, those of one model `row` after the other, into shares of the models in the result:
+/// inverse to the eighth power, so nearly a choice.
+#[inline(always)]
+fn share(errors: &mut [f32], row: usize) {
+    let mut rows = errors.chunks_exact_mut(row);
+    let each: [&mut [f32]; MODELS] = std::array::from_fn(|_| rows.next().unwrap_or_default());
+    let each = each.map(|errors| &mut errors[..row]);
+    for i in 0..row {
+        let mut least = each[0][i];
+        for errors in &each[1..] {
+            least = if errors[i] < least { errors[i] } else { least };
         }
-    }
-    let mut total = [0f32; LANES];
-    for errors in &mut errors {
-        for l in 0..LANES {
-            let ratio = least[l] / errors[l];
+        let mut total = 0.0;
+        for number in 0..MODELS {
+            let ratio = (least + TINY) / (each[number][i] + TINY);
             let second = ratio * ratio;
             let fourth = second * second;
-            errors[l] = fourth * fourth;
-            total[l] += errors[l];
+            each[number][i] = fourth * fourth;
+            total += each[number][i];
+        }
+        for number in 0..MODELS {
+            each[number][i] /= total;
         }
     }
-    for errors in &mut errors {
-        for l in 0..LANES {
-            errors[l] /= total[l];
-        }
-    }
-    errors
 }
 
+/// The predictions joined by the models' shares, those of one model `row` after the other.
 #[inline(always)]
-fn join(predictions: &[Lanes; MODELS], shares: &[Lanes; MODELS]) -> Lanes {
+fn join(predictions: &[Lanes; MODELS], shares: &[f32], row: usize) -> Lanes {
     let mut sum = [0f32; LANES];
-    for (prediction, share) in predictions.iter().zip(shares) {
+    for (number, prediction) in predictions.iter().enumerate() {
+        let shares = &shares[number * row..number * row + LANES];
         for l in 0..LANES {
-            sum[l] += prediction[l] * share[l];
+            sum[l] += prediction[l] * shares[l];
         }
     }
     sum

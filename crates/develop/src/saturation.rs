@@ -1,0 +1,121 @@
+//! Where a channel really clips.
+//!
+//! The white level of a file or of a list of cameras is often above the value at which this specimen's samples
+//! pile up at this ISO. Taken at its word, it leaves clipped highlights unseen and pink. So the picture is asked:
+//! where its brightest samples stand in one heap, there the channel clips.
+
+use photo::{Capture, Counts, Layout, Mosaic};
+use rayon::prelude::*;
+
+use crate::level::Levels;
+
+/// Light below this share of the white level is never taken for clipped.
+const LOWEST: f32 = 0.5;
+/// Width of a bin, as a share of the white level.
+const BIN: f32 = 0.001;
+/// Bins from `LOWEST` to a little above the white level.
+const BINS: usize = 512;
+
+/// A heap this close to the white level is at the white level.
+const SAME: f32 = 0.995;
+
+/// Fewest samples that make a heap.
+const FEWEST: u64 = 50;
+/// Width of a heap and of the slope below it that it is compared with, in bins: the noise of saturated samples.
+const HEAP: usize = 12;
+/// How much a heap stands above the slope below it.
+const STEEPNESS: u64 = 4;
+
+type Histogram = [[u64; BINS]; 3];
+
+/// Share of the white level at which red, green and blue clip: 1 where the picture shows nothing else.
+pub fn saturation(capture: &Capture, levels: &Levels) -> [f32; 3] {
+    let histogram = match &capture.counts {
+        Counts::U16(counts) => count(capture, counts, levels),
+        Counts::F32(counts) => count(capture, counts, levels),
+    };
+    histogram.map(|channel| top_of_heap(&channel))
+}
+
+fn count<T: Copy + Into<f32> + Sync>(capture: &Capture, counts: &Mosaic<T>, levels: &Levels) -> Histogram {
+    let (area, planes) = (capture.active_area, counts.layout.planes());
+    let rows: Vec<usize> = (area.y..area.bottom()).collect();
+    let parts: Vec<Histogram> = rows
+        .par_chunks(64)
+        .map(|rows| {
+            let mut histogram = [[0u64; BINS]; 3];
+            let mut light = vec![0f32; area.width * planes];
+            for &y in rows {
+                let start = (y * counts.size.width + area.x) * planes;
+                levels.row(&counts.samples[start..start + light.len()], area.x * planes, y, &mut light);
+                for (i, &v) in light.iter().enumerate().filter(|(_, v)| **v >= LOWEST) {
+                    let channel = match &counts.layout {
+                        Layout::Cfa(cfa) => cfa.at(area.x + i, y).plane(),
+                        Layout::Rgb => Some(i % 3),
+                        Layout::Monochrome => Some(0),
+                    };
+                    let bin = (((v - LOWEST) / BIN) as usize).min(BINS - 1);
+                    if let Some(channel) = channel {
+                        histogram[channel][bin] += 1;
+                    }
+                }
+            }
+            histogram
+        })
+        .collect();
+    parts.into_iter().fold([[0; BINS]; 3], |mut sum, part| {
+        for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
+            *sum += part;
+        }
+        sum
+    })
+}
+
+/// The lower edge of the heap at the bright end, as a share of the white level; 1 when there is none.
+fn top_of_heap(bins: &[u64; BINS]) -> f32 {
+    let mut above = 0;
+    // A few hot pixels above the heap do not count.
+    let top = bins.iter().rposition(|&n| {
+        above += n;
+        above >= FEWEST
+    });
+    let Some(top) = top.filter(|&top| top >= 3 * HEAP) else { return 1.0 };
+    let sum = |from: usize, to: usize| bins[from..to].iter().sum::<u64>();
+    let heap = sum(top + 1 - HEAP, BINS.min(top + HEAP));
+    let slope = sum(top + 1 - 3 * HEAP, top + 1 - HEAP) / 2;
+    if heap < FEWEST || heap < STEEPNESS * slope {
+        return 1.0;
+    }
+    // The darkest bin of the heap that still holds a good part of it.
+    let highest = bins[top + 1 - HEAP..].iter().copied().max().unwrap_or(0);
+    let first = (top + 1 - HEAP..BINS).find(|&i| bins[i] * 10 >= highest).unwrap_or(top);
+    let level = LOWEST + first as f32 * BIN;
+    if level > SAME { 1.0 } else { level }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_heap_below_the_white_level_is_where_the_channel_clips() {
+        let mut bins = [10u64; BINS];
+        for n in &mut bins[391..] {
+            *n = 0;
+        }
+        (bins[388], bins[389], bins[390]) = (300, 4000, 500);
+        bins[450] = 3; // Hot pixels.
+        let found = top_of_heap(&bins);
+        assert!((found - (LOWEST + 389.0 * BIN)).abs() < 1.5 * BIN, "{found}");
+    }
+
+    #[test]
+    fn a_picture_that_just_ends_does_not_clip() {
+        let mut bins = [0u64; BINS];
+        for (i, n) in bins.iter_mut().take(400).enumerate() {
+            *n = 2000 - 5 * i as u64;
+        }
+        assert!((top_of_heap(&bins) - 1.0).abs() < 1e-6);
+        assert!((top_of_heap(&[0; BINS]) - 1.0).abs() < 1e-6);
+    }
+}
