@@ -1,0 +1,16 @@
+#!/bin/sh
+# Makes the pictures of the guide from the samples. Run from the top of the repository.
+set -eu
+darkroot="${1:-target/release/darkroot}"
+develop() { "$darkroot" develop -q --overwrite --quality 80 --chroma 420 "$@"; }
+develop samples/still-life.dng -o docs/images/neutral.jpg
+develop samples/still-life.dng --look vivid -o docs/images/vivid.jpg
+develop samples/still-life.dng --look flat -o docs/images/flat.jpg
+develop samples/still-life.dng --white-balance 3200K -o docs/images/3200K.jpg
+# A shot that is two and a half stops too bright.
+bright=$(mktemp -d)
+cargo run --release -q -p darkroot-simulate --example make_raw -- --format dng --width 720 --height 480 --stops 2.5 \
+    --out "$bright/bright.dng"
+develop "$bright/bright.dng" --exposure -2 --highlights keep -o docs/images/highlights-keep.jpg
+develop "$bright/bright.dng" --exposure -2 --highlights rebuild -o docs/images/highlights-rebuild.jpg
+rm -r "$bright"
