@@ -125,8 +125,12 @@ pub(crate) fn error(e: &flashraw::Error) -> Error {
         E::UnsupportedCompression { compression, .. } => {
             Error::Compression { compression: compression.clone(), decoder: "flashraw" }
         }
+        // A file that ends before its samples, as previews cut from raw files do.
+        E::CameraUnsupported { reason, .. } if reason.contains("no lossless-JPEG raw stream") => {
+            Error::NoRawData { detail: reason.clone() }
+        }
         E::CameraUnsupported { make, model, reason } => Error::Camera {
-            camera: format!("{make} {model}").trim().to_owned(),
+            camera: if model.starts_with(make.as_str()) { model.clone() } else { format!("{make} {model}") },
             detail: if reason.is_empty() { "not in its list".into() } else { reason.clone() },
             decoder: "flashraw",
         },
@@ -154,7 +158,12 @@ fn decode_error(e: &flashraw::Error, info: &FrameInfo) -> Error {
 }
 
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<FlashRaw<'a>, Error> {
-    FlashRaw::open_with(bytes, flash_limits(limits)).map_err(|e| error(&e))
+    FlashRaw::open_with(bytes, flash_limits(limits)).map_err(|e| match error(&e) {
+        Error::NotRaw { .. } if bytes.starts_with(b"II") || bytes.starts_with(b"MM") => {
+            Error::NotRaw { found: "it is a TIFF file without raw samples that this program knows" }
+        }
+        other => other,
+    })
 }
 
 fn flash_limits(limits: &Limits) -> flashraw::Limits {
