@@ -60,15 +60,25 @@ impl CameraMatrix {
     /// Balanced camera RGB to XYZ relative to D50, (1,1,1) to D50 exactly, for the light whose neutral and
     /// white these are.
     ///
-    /// The forward matrices do it. A calibration without one gets it from its color matrix and the neutral of
-    /// its own light: so the change of light is made by balancing in camera space, as with a forward matrix,
-    /// and a white balance that is no light (pre-balanced samples, artistic choices) does no harm.
+    /// Forward matrices do it where the maker gives them. Else the inverse of the color matrix does, with
+    /// Bradford adaptation from the white, as the specification has it; but only for whites that lights have.
+    /// Balanced samples, artistic choices and strange lamps give whites off the Planckian locus, for which a
+    /// color matrix says nothing: there the forward matrix that it implies for its own light serves.
     pub fn to_xyz_d50(&self, neutral: [f64; 3], white: Xy) -> Matrix3 {
         let neutral = Vector3::from(neutral);
-        let here = self.at(Temperature::of(white).kelvin);
+        let light = Temperature::of(white);
+        let here = self.at(light.kelvin);
         let to_reference = here.reference_to_camera.try_inverse().unwrap_or_else(Matrix3::identity);
         let rebalance = Matrix3::from_diagonal(&(to_reference * neutral).map(|v| 1.0 / v));
-        white_preserving(here.forward * rebalance * to_reference * Matrix3::from_diagonal(&neutral))
+        let unbalance = Matrix3::from_diagonal(&neutral);
+        let forward = white_preserving(here.forward * rebalance * to_reference * unbalance);
+        let plausible = ((STRANGE_DUV - light.duv.abs()) / (STRANGE_DUV - ORDINARY_DUV)).clamp(0.0, 1.0);
+        if here.forward_is_given || plausible <= 0.0 {
+            return forward;
+        }
+        let camera_to_xyz = here.xyz_to_camera.try_inverse().unwrap_or_else(Matrix3::identity);
+        let inverse = white_preserving(bradford(white.xyz(), white::D50) * camera_to_xyz * unbalance);
+        forward + (inverse - forward) * plausible
     }
 
     /// The matrices for a light of `kelvin`: between two calibrations by mired, beyond them the nearest.
@@ -97,8 +107,14 @@ impl CameraMatrix {
             high.camera_calibration.unwrap_or_else(identity),
         );
         let forward = mix(forward_matrix(low), forward_matrix(high));
+        let forward_is_given = low.forward_matrix.is_some() && high.forward_matrix.is_some();
         let reference_to_camera = Matrix3::from_diagonal(&self.analog_balance) * calibration;
-        Matrices { xyz_to_camera: reference_to_camera * color, reference_to_camera, forward }
+        Matrices {
+            xyz_to_camera: reference_to_camera * color,
+            reference_to_camera,
+            forward,
+            forward_is_given,
+        }
     }
 }
 
@@ -106,7 +122,14 @@ struct Matrices {
     xyz_to_camera: Matrix3,
     reference_to_camera: Matrix3,
     forward: Matrix3,
+    /// Whether the maker gives it; else it is derived.
+    forward_is_given: bool,
 }
+
+/// Distances from the Planckian locus (CIE 1960 uv): daylight and lamps lie within the first, nothing ordinary
+/// beyond the second.
+const ORDINARY_DUV: f64 = 0.006;
+const STRANGE_DUV: f64 = 0.010;
 
 /// The forward matrix of a calibration: its own, or the one that its color matrix implies for its own light (D65
 /// where it names none, as lists of camera matrices have it).
@@ -217,6 +240,25 @@ mod tests {
         let matrix = camera().to_xyz_d50(camera().neutral_of(white).unwrap(), white);
         let d50 = matrix * Vector3::new(1.0, 1.0, 1.0);
         assert!((d50 - Vector3::from(white::D50)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_white_that_is_no_light_still_gives_sane_colours() {
+        // The Nikon D1 stores balanced samples: its neutral (1,1,1) is no light.
+        let matrix = camera();
+        let pink = matrix.white_of([1.0, 0.55, 1.0]);
+        assert!(Temperature::of(pink).duv < -STRANGE_DUV);
+        let derived = matrix.at(Temperature::of(pink).kelvin).forward;
+        let strange = matrix.to_xyz_d50([1.0, 0.55, 1.0], pink);
+        assert!((strange - derived).amax() < 1e-9, "{strange} {derived}");
+        // An ordinary light goes by the inverse of the color matrix instead.
+        let daylight = matrix.neutral_of(white::D65_XY).unwrap();
+        let ordinary = matrix.to_xyz_d50(daylight, matrix.white_of(daylight));
+        let camera_to_xyz = matrix.calibrations[1].color_matrix.try_inverse().unwrap();
+        let expected = bradford(white::D65_XY.xyz(), white::D50) * camera_to_xyz;
+        let scale = ordinary[(1, 1)] / (expected[(1, 1)] * daylight[1]);
+        let column = |c: usize| (expected.column(c) * daylight[c] * scale - ordinary.column(c)).amax();
+        assert!((0..3).all(|c| column(c) < 1e-3), "{ordinary} {expected}");
     }
 
     #[test]
