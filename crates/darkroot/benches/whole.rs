@@ -3,6 +3,8 @@
 //!
 //! `cargo bench -p darkroot`.
 
+#![allow(missing_docs, clippy::expect_used)] // Criterion's macros document nothing; a bench may stop.
+
 use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

@@ -2,6 +2,8 @@
 //!
 //! `cargo bench -p darkroot-develop`; one stage: `cargo bench -p darkroot-develop -- demosaic`.
 
+#![allow(missing_docs, clippy::expect_used)] // Criterion's macros document nothing; a bench may stop.
+
 use std::hint::black_box;
 
 use colour::{RgbSpace, TransferCurve};

@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let directory = arguments.next().map(PathBuf::from).or_else(data).ok_or("name a directory")?;
     let out = arguments.next().map(PathBuf::from);
 
-    println!("{:<28} {:<8} {:>13} {:>13}  MP/s on one thread", "method", "array", "Display", "Linear");
+    println!("{:<62} {:<8} {:>13} {:>13}  MP/s on one thread", "method", "array", "Display", "Linear");
     for (letters, method) in METHODS {
         let cfa = Cfa::parse(letters).ok_or("no array")?;
         let mut figures = Vec::new();
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let array = if cfa.is_bayer() { BAYER } else { "X-Trans" };
         let pair = |i: usize| format!("{:.2}/{:.2}", figures[i], figures[i + 1]);
         let name = method.name();
-        println!("{name:<28} {array:<8} {:>13} {:>13}  {:.1}", pair(0), pair(2), speed(&cfa, method));
+        println!("{name:<62} {array:<8} {:>13} {:>13}  {:.1}", pair(0), pair(2), speed(&cfa, method));
     }
     Ok(())
 }

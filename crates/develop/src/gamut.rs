@@ -2,6 +2,7 @@
 
 use colour::{Matrix3, RgbSpace, white};
 use photo::{Display, Rgb, Scene, Toned};
+use profile::simd::vectorised;
 
 /// Linear Rec. 2020 to the linear RGB of another space, white to white.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,10 +34,10 @@ fn rows(m: &Matrix3) -> [[f32; 3]; 3] {
 pub fn fit(mut picture: Rgb<Toned>, primaries: &Primaries) -> Rgb<Display> {
     let [r, g, b] = picture.planes_mut();
     let weights = primaries.luminance;
-    pulp::Arch::new().dispatch(
+    vectorised(
         #[inline(always)]
         || {
-            for ((r, g), b) in r.iter_mut().zip(g).zip(b) {
+            for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
                 let v = primaries.convert([*r, *g, *b]);
                 let grey = (weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2]).clamp(0.0, 1.0);
                 let (high, low) = (v[0].max(v[1]).max(v[2]), v[0].min(v[1]).min(v[2]));
@@ -53,7 +54,7 @@ pub fn fit(mut picture: Rgb<Toned>, primaries: &Primaries) -> Rgb<Display> {
 /// Converts and changes nothing else: for the linear look.
 pub fn convert(mut picture: Rgb<Scene>, primaries: &Primaries) -> Rgb<Display> {
     let [r, g, b] = picture.planes_mut();
-    for ((r, g), b) in r.iter_mut().zip(g).zip(b) {
+    for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
         [*r, *g, *b] = primaries.convert([*r, *g, *b]);
     }
     picture.into_space()

@@ -7,6 +7,7 @@
 //! the result is made neutral.
 
 use photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
+use profile::simd::vectorised;
 
 /// Pixels around a sample that rebuilding looks at.
 pub const BORDER: usize = 2;
@@ -99,10 +100,10 @@ pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
     let Treatment::Rebuild { limits, .. } = treatment else { return };
     let [r, g, b] = picture.planes_mut();
     let scale = limits.map(|l| 1.0 / l);
-    pulp::Arch::new().dispatch(
+    vectorised(
         #[inline(always)]
         || {
-            for ((r, g), b) in r.iter_mut().zip(g).zip(b) {
+            for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
                 let share = (*r * scale[0]).min(*g * scale[1]).min(*b * scale[2]);
                 let t = ((share - NEARLY) * (1.0 / (CLIPPED - NEARLY))).clamp(0.0, 1.0);
                 let weight = t * t * (3.0 - 2.0 * t);

@@ -19,6 +19,7 @@ pub use recipe::{Balance, Bits, Crop, Demosaic, Exposure, Highlights, Look, Outp
 pub mod plan;
 pub use plan::{Colours, Error, Plan, plan};
 
+pub mod noise;
 pub mod saturation;
 
 pub mod survey;

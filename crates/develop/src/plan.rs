@@ -10,6 +10,7 @@ use crate::demosaic::Method;
 use crate::gamut::Primaries;
 use crate::highlights::{self, Treatment};
 use crate::level::Levels;
+use crate::noise::Noise;
 use crate::recipe::{Balance, Bits, Crop, Highlights, OutputSpace, Recipe};
 use crate::survey::{self, Survey};
 use crate::tone::Curve;
@@ -97,6 +98,7 @@ pub struct Plan {
     pub(crate) mosaic_corrections: Vec<Correction>,
     pub(crate) picture_corrections: Vec<Correction>,
     pub(crate) highlights: Treatment,
+    pub(crate) noise: Noise,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
@@ -169,6 +171,11 @@ pub fn plan(capture: &Capture, profile: Option<&Profile>, recipe: &Recipe) -> Re
             notes.push("the file's lens distortion correction (WarpRectilinear) is not applied".to_owned());
         }
     }
+    let mosaic_corrections = supported(&capture.mosaic_corrections);
+    let noise = match demosaic {
+        Method::Lmmse => Noise::measure(capture, &levels, &mosaic_corrections, multipliers),
+        _ => Noise::NONE,
+    };
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
@@ -179,7 +186,8 @@ pub fn plan(capture: &Capture, profile: Option<&Profile>, recipe: &Recipe) -> Re
         crop,
         orientation: capture.orientation,
         levels,
-        mosaic_corrections: supported(&capture.mosaic_corrections),
+        mosaic_corrections,
+        noise,
         picture_corrections: supported(&capture.picture_corrections),
         highlights: if camera_output { Treatment::Keep } else { treatment },
         model: (!camera_output).then(|| PlaneModel::new(&model.then(&to_scene))),

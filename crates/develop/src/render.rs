@@ -91,6 +91,7 @@ impl Plan {
         let mut mosaic = tile(capture, self, rect, border);
         highlights::treat(&mut mosaic, &self.highlights);
         let mut camera = demosaic::demosaic(&mosaic, self.demosaic, border);
+        demosaic::debias::debias(&mosaic, border, &self.noise, &mut camera);
         drop(mosaic);
         if !self.picture_corrections.is_empty() {
             let area = capture.active_area;

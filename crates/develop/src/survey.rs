@@ -102,11 +102,11 @@ fn look_at<T: Copy + Into<f32> + Sync>(
     let mut clipped = [0u64; 3];
     for strip in strips {
         survey.blocks.extend(strip.blocks);
-        for c in 0..3 {
-            clipped[c] += strip.clipped[c];
-            for (sum, n) in survey.histogram[c].iter_mut().zip(strip.histogram[c]) {
-                *sum += n;
-            }
+        for (sum, n) in clipped.iter_mut().zip(strip.clipped) {
+            *sum += n;
+        }
+        for (sum, n) in survey.histogram.iter_mut().flatten().zip(strip.histogram.iter().flatten()) {
+            *sum += n;
         }
     }
     let total = |c: usize| survey.histogram[c].iter().sum::<u64>().max(1) as f64;

@@ -4,6 +4,7 @@
 //! 2x2 block), shifted by whole periods for larger arrays.
 
 use photo::{Capture, Cfa, Counts, Layout, Mosaic, Rect, Size};
+use profile::simd::vectorised;
 
 use crate::corrections::{self, Run};
 use crate::level::Levels;
@@ -67,7 +68,7 @@ fn cut<T: Copy + Into<f32>>(
 }
 
 fn linear<T: Copy + Into<f32>>(levels: &Levels, stored: &[T], first: usize, y: usize, light: &mut [f32]) {
-    pulp::Arch::new().dispatch(
+    vectorised(
         #[inline(always)]
         || levels.row(stored, first, y, light),
     );

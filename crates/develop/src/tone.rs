@@ -7,6 +7,7 @@
 //! bright colours run to white.
 
 use photo::{Rgb, Scene, Toned};
+use profile::simd::vectorised;
 
 use crate::Look;
 
@@ -58,10 +59,10 @@ impl Curve {
 /// Applies a look's curve.
 pub fn tone(mut picture: Rgb<Scene>, curve: Curve) -> Rgb<Toned> {
     let [r, g, b] = picture.planes_mut();
-    pulp::Arch::new().dispatch(
+    vectorised(
         #[inline(always)]
         || {
-            for ((r, g), b) in r.iter_mut().zip(g).zip(b) {
+            for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
                 let (high, low) = (r.max(*g).max(*b), r.min(*g).min(*b));
                 let (to_high, to_low) = (curve.at(high), curve.at(low));
                 // Grey has no span: every channel is then `low` and becomes `to_low`.

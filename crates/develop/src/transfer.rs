@@ -35,8 +35,8 @@ impl Encoder {
     fn at(&self, linear: f32) -> f32 {
         const FIRST: u32 = (127 - EXPONENTS as u32) << 23;
         const PIECE_BITS: u32 = 23 - SEGMENTS.trailing_zeros();
-        // A NaN becomes 0 here.
-        let v = linear.max(0.0).min(1.0);
+        // `max` makes 0 of a NaN, which `clamp` would keep.
+        let v = f32::min(linear.max(0.0), 1.0);
         let bits = v.to_bits();
         if bits < FIRST {
             return v * (self.knots[0] / f32::from_bits(FIRST));

@@ -20,5 +20,7 @@ pub use planes::PlaneModel;
 pub mod calibration;
 pub use calibration::{Calibration, Light, Profile, ProfileCamera};
 
+pub mod simd;
+
 pub mod file;
 pub use file::Error;

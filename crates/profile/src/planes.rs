@@ -5,6 +5,7 @@
 //! and vectorised by the compiler for AVX2 where the machine has it; additions and multiplications are never
 //! fused, so every machine gives the same bits.
 
+use crate::simd::vectorised;
 use crate::{Model, Order};
 
 /// Pixels handled at a time: their roots stay in the first-level cache.
@@ -30,10 +31,10 @@ impl PlaneModel {
         let [r, g, b] = planes;
         let length = r.len().min(g.len()).min(b.len());
         let (r, g, b) = (&mut r[..length], &mut g[..length], &mut b[..length]);
-        let blocks = r.chunks_mut(BLOCK).zip(g.chunks_mut(BLOCK)).zip(b.chunks_mut(BLOCK));
-        pulp::Arch::new().dispatch(
+        vectorised(
             #[inline(always)]
             || {
+                let blocks = r.chunks_mut(BLOCK).zip(g.chunks_mut(BLOCK)).zip(b.chunks_mut(BLOCK));
                 for ((r, g), b) in blocks {
                     self.block(r, g, b);
                 }

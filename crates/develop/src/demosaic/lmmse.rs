@@ -3,11 +3,13 @@
 //! L. Zhang and X. Wu, "Color demosaicking via directional linear minimum mean square-error estimation", IEEE
 //! Transactions on Image Processing 14(12), 2005. The difference between green and red or blue is smooth. Along
 //! rows and along columns it is estimated by a linear interpolation, whose error is taken for noise and removed
-//! by a local linear estimator; the two directions are joined by the inverse of their estimated errors.
+//! by a local linear estimator; the two directions are joined by the inverse of their estimated errors. Other than in
+//! the paper, less of the second difference is used and the overshoot of green is limited.
 
 use photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
 
-use super::{signed_sqrt, signed_square, vectorised};
+use super::{signed_sqrt, signed_square};
+use profile::simd::vectorised;
 
 /// Pixels around the result that the method looks at: 2 for the interpolation, 4 for its low-pass, 4 for the
 /// statistics, 1 for red and blue.
@@ -27,6 +29,10 @@ const LOW_PASS: [f32; 2 * HALF + 1] = [
     9.0 / 128.0,
     4.0 / 128.0,
 ];
+/// Factor of the other colour's second difference in the interpolation of one. Hamilton and Adams have a quarter,
+/// right for grey detail; with this nothing is lost there, and colourful detail gains (0.2 dB on the McMaster
+/// pictures).
+const SECOND_DIFFERENCE: f32 = 0.1875;
 /// Keeps quotients of vanishing variances finite; far below the square of any sample.
 const TINY: f32 = 1e-30;
 
@@ -82,6 +88,7 @@ fn run(mosaic: &Mosaic<f32>, cfa: &Cfa, border: usize, picture: &mut Rgb<CameraS
             let (eh, ev) = (eh + TINY, ev + TINY);
             *out = (ev * xh + eh * xv) / (eh + ev);
         }
+        limit(out, line, row(y - 1), row(y + 1));
     }
 
     let size = picture.size();
@@ -105,8 +112,8 @@ fn green_columns(cfa: &Cfa, y: usize) -> usize {
     usize::from(cfa.at(0, y) != Filter::Green)
 }
 
-/// Difference of green and the other colour from five samples in line (the second-order Laplacian
-/// interpolation of Hamilton and Adams). `greens` is the parity of the green sites; outputs begin at an even
+/// Difference of green and the other colour from five samples in line (the interpolation of Hamilton and Adams,
+/// with less of the second difference). `greens` is the parity of the green sites; outputs begin at an even
 /// column.
 #[inline(always)]
 fn difference(out: &mut [f32], s: [&[f32]; 5], greens: usize) {
@@ -114,7 +121,8 @@ fn difference(out: &mut [f32], s: [&[f32]; 5], greens: usize) {
     let n = out.len();
     let (a, b, c, d, e) = (&s[0][..n], &s[1][..n], &s[2][..n], &s[3][..n], &s[4][..n]);
     for i in 0..n {
-        let estimate = 0.5 * (b[i] + d[i]) - 0.25 * (a[i] + e[i]) - 0.5 * c[i];
+        let bend = SECOND_DIFFERENCE * (2.0 * c[i] - a[i] - e[i]);
+        let estimate = 0.5 * (b[i] + d[i]) + bend - c[i];
         out[i] = signs[i & 1] * estimate;
     }
 }
@@ -140,8 +148,8 @@ fn estimate(x: &mut [f32], error: &mut [f32], signal: [&[f32]; 9], low: [&[f32];
     let error = &mut error[..n];
     for i in 0..n {
         let mut mean = 0.0;
-        for k in 0..9 {
-            mean += low[k][i];
+        for low in &low {
+            mean += low[i];
         }
         mean *= 1.0 / 9.0;
         let (mut own, mut noise) = (0.0, 0.0);
@@ -187,5 +195,25 @@ fn colours(
         green[i] = signed_square(g);
         own[i] = signed_square(o);
         other[i] = signed_square(t);
+    }
+}
+
+/// Keeps green within the range of its four neighbours and as much again on both sides: where red or blue change by
+/// more than green does, as at the edges of saturated colours, the estimate overshoots and leaves a grid of dots.
+/// `line`, `above` and `below` are samples; only the differences at red and blue sites come to mean something.
+#[inline(always)]
+fn limit(differences: &mut [f32], line: &[f32], above: &[f32], below: &[f32]) {
+    let n = differences.len() - 2;
+    let differences = &mut differences[1..=n];
+    let (left, here, right) = (&line[..n], &line[1..=n], &line[2..n + 2]);
+    let (up, down) = (&above[1..=n], &below[1..=n]);
+    let least = |a: f32, b: f32| if a < b { a } else { b };
+    let most = |a: f32, b: f32| if a > b { a } else { b };
+    for i in 0..n {
+        let low = least(least(left[i], right[i]), least(up[i], down[i]));
+        let high = most(most(left[i], right[i]), most(up[i], down[i]));
+        let range = high - low;
+        let green = here[i] + differences[i];
+        differences[i] = least(most(green, low - range), high + range) - here[i];
     }
 }

@@ -9,6 +9,7 @@ use photo::{CameraSpace, Layout, Mosaic, Rgb, Size};
 use crate::Demosaic;
 
 pub mod bilinear;
+pub mod debias;
 pub mod lmmse;
 pub mod xtrans;
 
@@ -53,7 +54,7 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Self::Lmmse => "directional LMMSE (Zhang and Wu 2005)",
-            Self::XTrans => "kriging under eight models",
+            Self::XTrans => "kriging under eight models (after Matheron 1963, Dubrule 1983)",
             Self::Bilinear => "bilinear",
             Self::None => "none",
         }
@@ -89,24 +90,6 @@ fn split(mosaic: &Mosaic<f32>, planes: usize, border: usize, picture: &mut Rgb<C
             }
         }
     }
-}
-
-/// Runs `work` compiled for the vectors of this processor.
-///
-/// A closure handed to `pulp` itself is called by `FnOnce::call_once`, for most closures a shim that is compiled
-/// for the least processor and too large to be inlined; called by `FnMut` there is none. `work` must be
-/// `#[inline(always)]`, and so must be what it calls.
-#[inline(always)]
-pub(crate) fn vectorised(work: impl FnMut()) {
-    struct Work<F>(F);
-    impl<F: FnMut()> pulp::WithSimd for Work<F> {
-        type Output = ();
-        #[inline(always)]
-        fn with_simd<S: pulp::Simd>(mut self, _: S) {
-            (self.0)();
-        }
-    }
-    pulp::Arch::new().dispatch(Work(work));
 }
 
 /// Square root that keeps the sign.

@@ -71,14 +71,43 @@ fn twice_the_light_is_twice_the_picture() {
 }
 
 #[test]
-fn samples_that_were_measured_are_kept() {
-    let cfa = Cfa::parse("RGGB").unwrap();
-    let light = |x: usize, y: usize, _| ((x * 31 + y * 17) % 100) as f32 / 100.0;
-    let picture = demosaic(&mosaic(&cfa, SIZE, light), Method::Lmmse, 14);
-    for y in 0..picture.size().height {
-        for x in 0..picture.size().width {
-            let plane = cfa.at(x + 14, y + 14).plane().unwrap();
-            assert!((picture.at(x, y)[plane] - light(x + 14, y + 14, 0)).abs() < 1e-5);
+fn a_pixel_does_not_depend_on_where_its_tile_begins() {
+    for (cfa, method) in methods() {
+        let light = |x: usize, y: usize, c: usize| ((x * 7919 + y * 104_729 + c * 31) % 1000) as f32 / 1000.0;
+        let border = method.border();
+        let whole = demosaic(&mosaic(&cfa, SIZE, light), method, border);
+        for (x0, y0) in [(1, 0), (0, 1), (5, 3), (8, 4)] {
+            let size = Size { width: 37, height: 33 };
+            let part = mosaic(&cfa.shifted(x0, y0), size, |x, y, c| light(x + x0, y + y0, c));
+            let part = demosaic(&part, method, border);
+            for y in 0..part.size().height {
+                for x in 0..part.size().width {
+                    let bits = |rgb: [f32; 3]| rgb.map(f32::to_bits);
+                    let (a, b) = (whole.at(x + x0, y + y0), part.at(x, y));
+                    assert_eq!(bits(a), bits(b), "{method:?} {cfa} at {x},{y}");
+                }
+            }
         }
     }
+}
+
+#[test]
+fn samples_that_were_measured_are_kept() {
+    let light = |x: usize, y: usize, _| ((x * 31 + y * 17) % 100) as f32 / 100.0;
+    for (cfa, method) in methods() {
+        let picture = demosaic(&mosaic(&cfa, SIZE, light), method, 14);
+        for y in 0..picture.size().height {
+            for x in 0..picture.size().width {
+                let plane = cfa.at(x + 14, y + 14).plane().unwrap();
+                assert!((picture.at(x, y)[plane] - light(x + 14, y + 14, 0)).abs() < 1e-5);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_array_with_the_counts_of_x_trans_in_another_order_is_no_x_trans() {
+    let of = |letters: &str| Method::of(&Layout::Cfa(Cfa::parse(letters).unwrap()), Demosaic::Best);
+    assert_eq!(of(X_TRANS), Some(Method::XTrans));
+    assert_eq!(of("GBGGRG RGRBGB GBGGRG GRGGBG BGBRGR GRGGGB"), Some(Method::Bilinear));
 }

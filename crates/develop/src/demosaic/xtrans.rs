@@ -16,9 +16,10 @@ use std::sync::LazyLock;
 
 use photo::{CameraSpace, Cfa, Mosaic, Rgb};
 
-use super::{signed_sqrt, signed_square, vectorised};
+use super::{signed_sqrt, signed_square};
+use profile::simd::vectorised;
 
-/// Pixels around the result that the method looks at: [`REACH`] for the prediction, [`HALF`] for its errors.
+/// Pixels around the result that the method looks at: 4 for the prediction, 4 for its errors.
 pub const BORDER: usize = REACH + HALF;
 
 /// Samples within this distance, and half a pixel more, predict.
@@ -59,9 +60,11 @@ const MODELS: usize = 8;
 type Each = [f32; MODELS];
 
 /// How unlike two samples are: half the mean square of their difference, up to a factor, is
-/// `d(stretch)^power + share d(colour_stretch)^colour_power`, the second term for equal colours only; for
-/// unequal ones it is a constant that the prediction does not depend on. Equal distances lie on an ellipse of
-/// area pi whose axis along the edges is `stretch` times the other. Fitted to photographs.
+/// `d(stretch)^power + share d(colour_stretch)^colour_power`. The second term is for equal colours only; for unequal
+/// ones it is a constant, which the prediction does not depend on. `d(s)` is the distance in pixels, divided by the
+/// root of `s` along the edges and multiplied by it across them.
+///
+/// The numbers were found by trying, on four Kodak and three McMaster pictures in linear light.
 #[derive(Clone, Copy)]
 struct Model {
     stretch: f64,
@@ -402,22 +405,22 @@ fn window(out: &mut [f32], s: [&[f32]; 2 * HALF + 1]) {
 fn share(errors: &mut [f32], row: usize) {
     let mut rows = errors.chunks_exact_mut(row);
     let each: [&mut [f32]; MODELS] = std::array::from_fn(|_| rows.next().unwrap_or_default());
-    let each = each.map(|errors| &mut errors[..row]);
+    let mut each = each.map(|errors| &mut errors[..row]);
     for i in 0..row {
         let mut least = each[0][i];
         for errors in &each[1..] {
             least = if errors[i] < least { errors[i] } else { least };
         }
         let mut total = 0.0;
-        for number in 0..MODELS {
-            let ratio = (least + TINY) / (each[number][i] + TINY);
+        for errors in &mut each {
+            let ratio = (least + TINY) / (errors[i] + TINY);
             let second = ratio * ratio;
             let fourth = second * second;
-            each[number][i] = fourth * fourth;
-            total += each[number][i];
+            errors[i] = fourth * fourth;
+            total += errors[i];
         }
-        for number in 0..MODELS {
-            each[number][i] /= total;
+        for shares in &mut each {
+            shares[i] /= total;
         }
     }
 }

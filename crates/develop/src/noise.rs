@@ -1,0 +1,183 @@
+//! How strong the noise of a capture is, by brightness: measured in the flattest places of the picture itself.
+//!
+//! The variance is that of the square roots of balanced samples, the domain of demosaicing. Shot noise is even
+//! there (Anscombe, Biometrika 35, 1948); read noise lets it rise in the shadows.
+
+use photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic};
+use rayon::prelude::*;
+
+use crate::corrections::{self, Run};
+use crate::demosaic::{signed_sqrt, signed_square};
+use crate::level::Levels;
+
+/// Half octaves of brightness from 2^-16 up: enough for four stops above white.
+const BINS: usize = 40;
+const FIRST_EXPONENT: u32 = 127 - 16;
+
+/// Side of the windows in which the variance is measured, pixels.
+const WINDOW: usize = 10;
+/// Most windows that are looked at.
+const MOST_WINDOWS: usize = 40_000;
+/// Fewest windows that tell something of their brightness.
+const FEWEST_WINDOWS: usize = 24;
+/// Which windows of one brightness count as flat, by rank.
+const FLAT_RANKS: (f64, f64) = (0.10, 0.25);
+/// The flattest windows of pure noise show this share of its variance: the mean between those ranks of a chi-square
+/// distribution of about 100 degrees of freedom.
+const SELECTION: f32 = 0.86;
+
+/// Variance of the square roots of balanced red, green and blue samples, by brightness.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    variances: [[f32; 3]; BINS],
+}
+
+impl Noise {
+    /// No noise at all.
+    pub const NONE: Self = Self { variances: [[0.0; 3]; BINS] };
+
+    /// Variances at a brightness (mean of balanced samples, 1 = saturated).
+    #[inline(always)]
+    pub fn at(&self, brightness: f32) -> [f32; 3] {
+        self.variances[bin(brightness)]
+    }
+
+    /// Measures the noise of a Bayer capture; other sensors have none here.
+    pub(crate) fn measure(
+        capture: &Capture,
+        levels: &Levels,
+        corrections: &[photo::Correction],
+        multipliers: [f32; 3],
+    ) -> Self {
+        let windows = match &capture.counts {
+            Counts::U16(m) => windows(capture, m, levels, corrections, multipliers),
+            Counts::F32(m) => windows(capture, m, levels, corrections, multipliers),
+        };
+        Self::of_windows(windows)
+    }
+
+    fn of_windows(windows: Vec<Window>) -> Self {
+        let mut bins: Vec<Vec<[f32; 3]>> = vec![Vec::new(); BINS];
+        for window in windows {
+            bins[bin(window.brightness)].push(window.variances);
+        }
+        let known: Vec<Option<[f32; 3]>> = bins.into_iter().map(flat).collect();
+        let nearest = |i: usize| {
+            let by_distance = (0..BINS).filter(|&j| known[j].is_some()).min_by_key(|&j| j.abs_diff(i));
+            by_distance.and_then(|j| known[j]).unwrap_or_default()
+        };
+        Self { variances: std::array::from_fn(nearest) }
+    }
+}
+
+/// Half octave of a brightness: its exponent and the first bit of its mantissa.
+#[inline(always)]
+fn bin(brightness: f32) -> usize {
+    let half_octave = brightness.max(0.0).to_bits() >> 22;
+    (half_octave.saturating_sub(FIRST_EXPONENT << 1) as usize).min(BINS - 1)
+}
+
+/// Mean variances of the flat ones among windows of one brightness.
+fn flat(mut windows: Vec<[f32; 3]>) -> Option<[f32; 3]> {
+    if windows.len() < FEWEST_WINDOWS {
+        return None;
+    }
+    windows.sort_by(|a, b| a.iter().sum::<f32>().total_cmp(&b.iter().sum::<f32>()));
+    let rank = |share: f64| (share * windows.len() as f64) as usize;
+    let chosen = &windows[rank(FLAT_RANKS.0)..rank(FLAT_RANKS.1).max(rank(FLAT_RANKS.0) + 1)];
+    let count = chosen.len() as f32;
+    Some([0, 1, 2].map(|c| (chosen.iter().map(|v| v[c]).sum::<f32>() / count / SELECTION).max(0.0)))
+}
+
+/// What one window of the picture shows.
+struct Window {
+    brightness: f32,
+    variances: [f32; 3],
+}
+
+fn windows<T: Copy + Into<f32> + Sync>(
+    capture: &Capture,
+    counts: &Mosaic<T>,
+    levels: &Levels,
+    corrections: &[photo::Correction],
+    multipliers: [f32; 3],
+) -> Vec<Window> {
+    let Layout::Cfa(cfa) = &counts.layout else { return Vec::new() };
+    let area = capture.active_area;
+    if !cfa.is_bayer() || area.width < WINDOW || area.height < WINDOW {
+        return Vec::new();
+    }
+    // Every so many rows of windows, over the whole picture.
+    let (columns, rows) = (area.width / WINDOW, area.height / WINDOW);
+    let step = (columns * rows).div_ceil(MOST_WINDOWS).max(1);
+    let rows: Vec<usize> = (0..rows).step_by(step).collect();
+    rows.par_iter()
+        .flat_map_iter(|row| {
+            let top = area.y + row * WINDOW;
+            let mut light = vec![0f32; columns * WINDOW];
+            let mut strip = Vec::with_capacity(light.len() * WINDOW);
+            for y in top..top + WINDOW {
+                let start = y * counts.size.width + area.x;
+                levels.row(&counts.samples[start..start + light.len()], area.x, y, &mut light);
+                let run = Run { x: 0, y: y - area.y, planes: 1, active: area.size() };
+                corrections::row(&mut light, corrections, run);
+                crate::balance::row(&mut light, &counts.layout, multipliers, area.x, y);
+                strip.extend_from_slice(&light);
+            }
+            let window = |i: usize| window(&strip, columns * WINDOW, i * WINDOW, cfa, (area.x, top));
+            (0..columns).map(window).collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// Brightness and variances of the window that begins in column `left` of a strip.
+fn window(strip: &[f32], width: usize, left: usize, cfa: &Cfa, (x0, y0): (usize, usize)) -> Window {
+    let (mut light, mut roots, mut counts) = ([0f32; 3], [0f32; 3], [0f32; 3]);
+    for y in 0..WINDOW {
+        for x in 0..WINDOW {
+            let v = strip[y * width + left + x];
+            let c = match cfa.at(x0 + left + x, y0 + y) {
+                Filter::Red => 0,
+                Filter::Blue => 2,
+                _ => 1,
+            };
+            light[c] += v;
+            roots[c] += signed_sqrt(v);
+            counts[c] += 1.0;
+        }
+    }
+    let variance = |c: usize| {
+        let n = counts[c];
+        (light[c] / n - signed_square(roots[c] / n)) * (n / (n - 1.0))
+    };
+    let brightness = light.iter().sum::<f32>() / (WINDOW * WINDOW) as f32;
+    Window { brightness, variances: [variance(0), variance(1), variance(2)] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn brightness_falls_into_half_octaves() {
+        assert_eq!(bin(1.0) - bin(0.5), 2);
+        assert_eq!(bin(0.75), bin(0.5) + 1);
+        assert_eq!([bin(0.0), bin(-1.0), bin(1e-9)], [0; 3]);
+        assert_eq!(bin(1e9), BINS - 1);
+    }
+
+    #[test]
+    fn the_flattest_windows_tell_the_noise_and_texture_does_not() {
+        let windows = (0..1000)
+            .map(|i| {
+                let variance = if i % 2 == 0 { 0.01 + i as f32 * 1e-3 } else { 1e-4 };
+                Window { brightness: 0.2, variances: [2.0 * variance, variance, variance] }
+            })
+            .collect();
+        let noise = Noise::of_windows(windows);
+        let [red, green, _] = noise.at(0.2);
+        assert!((green * SELECTION - 1e-4).abs() < 1e-6 && (red / green - 2.0).abs() < 1e-3);
+        // Brightnesses that no window has take the nearest.
+        assert_eq!(noise.at(0.001), noise.at(0.2));
+    }
+}
