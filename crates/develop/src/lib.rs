@@ -13,6 +13,9 @@
 //!
 //! **What it does not do:** no files, no clock, no environment, no state.
 
+// Tests compare exactly where results are exact.
+#![cfg_attr(test, allow(clippy::float_cmp))]
+
 pub mod recipe;
 pub use recipe::{Balance, Bits, Crop, Demosaic, Exposure, Highlights, Look, Output, OutputSpace, Recipe};
 

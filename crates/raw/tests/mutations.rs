@@ -1,6 +1,8 @@
 //! Damaged copies of the samples: every one is a capture or a sentence, never a panic that leaves `decode`, never a
 //! hang. More mutants: `DARKROOT_MUTANTS=20000 cargo test -p darkroot-raw --release --test mutations`.
 
+#![allow(clippy::unwrap_used)] // A test may stop.
+
 use raw::{Decoder, Limits, decode};
 
 /// xorshift64* (Marsaglia 2003; Vigna 2016): damage that is the same on every machine.
