@@ -122,7 +122,7 @@ impl Develop {
             None => ProfileStore::builtin(),
         };
         for fault in &store.faults {
-            eprintln!("warning: {fault}; it is not used");
+            crate::say(format_args!("warning: {fault}; it is not used"));
         }
 
         let progress = Progress::new(&jobs, common.quiet);
@@ -142,7 +142,7 @@ impl Develop {
         }
         progress.finish();
         if failures > 0 && jobs.len() > 1 {
-            eprintln!("{} of {} files failed", failures, jobs.len());
+            crate::say(format_args!("{} of {} files failed", failures, jobs.len()));
         }
         Ok(if failures == 0 { Outcome::Done } else { Outcome::SomeFailed })
     }
@@ -219,7 +219,8 @@ fn print_json(job: &Job, result: &Result<Report, darkroot::Error>) -> Result<()>
             line
         }
         Err(error) => serde_json::json!({
-            "status": "failed", "input": job.input, "output": job.output, "error": error.to_string(),
+            "status": "failed", "input": job.input.to_string_lossy(), "output": job.output.to_string_lossy(),
+            "error": error.to_string(),
         }),
     };
     writeln!(std::io::stdout(), "{line}")?;

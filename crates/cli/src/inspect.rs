@@ -48,11 +48,16 @@ impl Inspect {
             };
             return Ok(match darkroot::save_preview(file, out, self.overwrite) {
                 Ok(preview) => {
-                    eprintln!("{}: {} x {} pixels", out.display(), preview.size.width, preview.size.height);
+                    crate::say(format_args!(
+                        "{}: {} x {} pixels",
+                        out.display(),
+                        preview.size.width,
+                        preview.size.height
+                    ));
                     Outcome::Done
                 }
                 Err(error) => {
-                    eprintln!("error: {error}");
+                    crate::say(format_args!("error: {error}"));
                     Outcome::SomeFailed
                 }
             });
@@ -72,7 +77,7 @@ impl Inspect {
                     std::io::stdout().write_all(text.as_bytes())?;
                 }
                 Err(error) => {
-                    eprintln!("error: {error}");
+                    crate::say(format_args!("error: {error}"));
                     outcome = Outcome::SomeFailed;
                 }
             }

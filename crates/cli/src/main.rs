@@ -54,6 +54,12 @@ enum Outcome {
     SomeFailed,
 }
 
+/// Words for a person, on stderr. That nobody reads them any more must not stop the work.
+fn say(words: std::fmt::Arguments<'_>) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "{words}");
+}
+
 fn main() -> ExitCode {
     let cli = Cli::parse();
     keep_decoders_quiet();
@@ -72,7 +78,7 @@ fn main() -> ExitCode {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            crate::say(format_args!("error: {error:#}"));
             ExitCode::from(2)
         }
     }
@@ -100,6 +106,6 @@ fn remove_unfinished_on_interrupt() {
     };
     // Without a handler the program still works; only a temporary file may stay after an interrupt.
     if let Err(error) = ctrlc::set_handler(handler) {
-        eprintln!("warning: interrupts cannot be handled: {error}");
+        crate::say(format_args!("warning: interrupts cannot be handled: {error}"));
     }
 }

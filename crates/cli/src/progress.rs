@@ -47,7 +47,7 @@ impl Progress {
 
     /// Words for the person, above the bar.
     pub(crate) fn say(&self, words: &str) {
-        self.bar.suspend(|| eprintln!("{words}"));
+        self.bar.suspend(|| crate::say(format_args!("{words}")));
     }
 
     pub(crate) fn finish(&self) {

@@ -16,16 +16,17 @@ pub struct Temperature {
 const MIN_MIRED: f64 = 20.0;
 const MAX_MIRED: f64 = 1000.0;
 
-/// Tint units per unit of Duv: the scale that raw developers show, with magenta positive.
-const TINT_PER_DUV: f64 = -3000.0;
+/// Tint units per unit of Duv, the scale that raw developers show: a light above the Planckian locus is greenish,
+/// and has a positive tint because balancing for it makes the picture more magenta.
+const TINT_PER_DUV: f64 = 3000.0;
 
 impl Temperature {
-    /// From kelvin and a tint as shown by raw developers (-150 greenish ..= 150 magenta).
+    /// From kelvin and a tint as shown by raw developers: -150 (the picture becomes greener) ..= 150 (more magenta).
     pub fn from_kelvin_tint(kelvin: f64, tint: f64) -> Self {
         Self { kelvin, duv: tint / TINT_PER_DUV }
     }
 
-    /// The tint of this white: 0 on the Planckian locus, positive for magenta.
+    /// The tint of this white: 0 on the Planckian locus, positive above it, as for daylight (+10).
     pub fn tint(self) -> f64 {
         self.duv * TINT_PER_DUV
     }

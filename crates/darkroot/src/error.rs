@@ -76,6 +76,12 @@ pub enum Error {
         /// Why not.
         source: encode::Error,
     },
+    /// The output is the input.
+    #[error("{path}: is the raw file itself and would be overwritten; choose another name", path = path.display())]
+    OverInput {
+        /// The file.
+        path: PathBuf,
+    },
     /// The file has no embedded preview.
     #[error("{path}: has no embedded JPEG preview; develop it instead", path = path.display())]
     NoPreview {

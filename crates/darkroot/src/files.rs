@@ -7,6 +7,11 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::Error;
 
+/// Writes a path as text; what is no Unicode in it becomes a replacement character.
+pub(crate) fn as_text<S: serde::Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
+}
+
 /// Temporary files that are being written now.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 

@@ -16,6 +16,7 @@ use crate::{Error, Settings};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Inspection {
     /// The file.
+    #[serde(serialize_with = "crate::files::as_text")]
     pub input: PathBuf,
     /// Camera, by its common name.
     pub camera: String,
@@ -173,6 +174,9 @@ pub fn inspect(
 /// # Errors
 /// No preview, or input or output cannot be used.
 pub fn save_preview(input: &Path, output: &Path, overwrite: bool) -> Result<raw::Preview, Error> {
+    if crate::naming::same(input, output) {
+        return Err(Error::OverInput { path: input.to_owned() });
+    }
     let bytes = files::read(input)?;
     let preview = raw::preview(&bytes).map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     let preview = preview.ok_or_else(|| Error::NoPreview { path: input.to_owned() })?;

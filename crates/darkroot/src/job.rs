@@ -31,8 +31,10 @@ pub enum Step {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// The raw file.
+    #[serde(serialize_with = "crate::files::as_text")]
     pub input: PathBuf,
     /// The picture.
+    #[serde(serialize_with = "crate::files::as_text")]
     pub output: PathBuf,
     /// Its format.
     pub format: String,

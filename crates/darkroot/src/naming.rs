@@ -47,7 +47,7 @@ pub enum NamingError {
         output: PathBuf,
     },
     /// The output is an input.
-    #[error("{path}: would be overwritten by its own picture; choose another `-o`", path = path.display())]
+    #[error("{path}: is a raw file of this run and would be overwritten by a picture; choose another `-o`", path = path.display())]
     OverInput {
         /// The file.
         path: PathBuf,
@@ -125,12 +125,12 @@ pub fn plan_outputs(inputs: &[PathBuf], target: &Target, format: Format) -> Resu
         jobs.push(Job { input: input.clone(), output });
     }
     let mut taken: HashMap<String, &Path> = HashMap::new();
+    let originals: HashMap<String, &Path> = inputs.iter().map(|i| (key(i), i.as_path())).collect();
     for job in &jobs {
-        if same(&job.input, &job.output) {
-            return Err(NamingError::OverInput { path: job.input.clone() });
+        let key = key(&job.output);
+        if let Some(input) = originals.get(&key) {
+            return Err(NamingError::OverInput { path: input.to_path_buf() });
         }
-        // Names that differ only in case are one file on many disks.
-        let key = place(&job.output).to_string_lossy().to_lowercase();
         if let Some(first) = taken.insert(key, &job.input) {
             return Err(NamingError::Collision {
                 first: first.to_owned(),
@@ -149,8 +149,14 @@ fn place(path: &Path) -> PathBuf {
     folder.join(path.file_name().unwrap_or_default())
 }
 
-fn same(a: &Path, b: &Path) -> bool {
-    place(a) == place(b)
+/// The place in a form in which names that differ only in case are one, as they are on many disks.
+fn key(path: &Path) -> String {
+    place(path).to_string_lossy().to_lowercase()
+}
+
+/// Whether two paths name one file.
+pub(crate) fn same(a: &Path, b: &Path) -> bool {
+    key(a) == key(b)
 }
 
 fn fill(

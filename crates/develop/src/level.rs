@@ -20,23 +20,37 @@ impl Levels {
         let planes = layout.planes();
         let cfa_rows = if let Layout::Cfa(cfa) = layout { cfa.height() } else { 1 };
         let period = lcm(black.rows.max(1), cfa_rows);
+        // The scale is that of the channel's largest black level (DNG 1.7, chapter 5, "Rescaling"): a pattern in
+        // the black level is an offset, not a gain.
+        let channel_of = |x: usize, y: usize, plane: usize| match layout {
+            Layout::Cfa(cfa) => cfa.at(x, y).plane().unwrap_or(1),
+            Layout::Monochrome => 0,
+            Layout::Rgb => plane,
+        };
+        let base_of = |x: usize, y: usize, plane: usize| {
+            let i = ((y % black.rows) * black.columns + x % black.columns) * black.planes;
+            black.values[i + plane % black.planes]
+        };
+        let cfa_columns = if let Layout::Cfa(cfa) = layout { cfa.width() } else { 1 };
+        let mut largest = [f32::MIN; 3];
+        for y in 0..period {
+            for x in 0..lcm(black.columns.max(1), cfa_columns).min(size.width.max(1)) {
+                for plane in 0..planes {
+                    let largest = &mut largest[channel_of(x, y, plane)];
+                    *largest = largest.max(base_of(x, y, plane));
+                }
+            }
+        }
         let mut offsets = Vec::with_capacity(period);
         let mut scales = Vec::with_capacity(period);
         for y in 0..period {
             let (mut offset, mut scale) = (Vec::new(), Vec::new());
             for x in 0..size.width {
                 for plane in 0..planes {
-                    let channel = match layout {
-                        Layout::Cfa(cfa) => cfa.at(x, y).plane().unwrap_or(1),
-                        Layout::Monochrome => 0,
-                        Layout::Rgb => plane,
-                    };
+                    let channel = channel_of(x, y, plane);
                     let delta = black.column_deltas.get(x).copied().unwrap_or(0.0);
-                    let base = black.values[((y % black.rows) * black.columns + x % black.columns)
-                        * black.planes
-                        + plane % black.planes];
-                    offset.push(base + delta);
-                    scale.push(1.0 / (capture.white.0[channel] - base).max(f32::MIN_POSITIVE));
+                    offset.push(base_of(x, y, plane) + delta);
+                    scale.push(1.0 / (capture.white.0[channel] - largest[channel]).max(f32::MIN_POSITIVE));
                 }
             }
             offsets.push(offset);

@@ -10,8 +10,9 @@ use crate::corrections::{self, Run};
 use crate::demosaic::{signed_sqrt, signed_square};
 use crate::level::Levels;
 
-/// Half octaves of brightness from 2^-16 up: enough for four stops above white.
-const BINS: usize = 40;
+/// Half octaves of brightness from 2^-16 to 2^8 of the picture's mean. Relative to the mean, so that the same picture
+/// with more light has the same noise for its brightness.
+const BINS: usize = 48;
 const FIRST_EXPONENT: u32 = 127 - 16;
 
 /// Side of the windows in which the variance is measured, pixels.
@@ -21,25 +22,27 @@ const MOST_WINDOWS: usize = 40_000;
 /// Fewest windows that tell something of their brightness.
 const FEWEST_WINDOWS: usize = 24;
 /// Which windows of one brightness count as flat, by rank.
-const FLAT_RANKS: (f64, f64) = (0.10, 0.25);
+const FLAT_RANKS: (f64, f64) = (0.05, 0.20);
 /// The flattest windows of pure noise show this share of its variance: the mean between those ranks of a chi-square
-/// distribution of about 100 degrees of freedom.
-const SELECTION: f32 = 0.86;
+/// distribution of about 30 degrees of freedom: second differences of one window depend on each other.
+const SELECTION: f32 = 0.62;
 
 /// Variance of the square roots of balanced red, green and blue samples, by brightness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
     variances: [[f32; 3]; BINS],
+    /// 1 / mean brightness of the picture.
+    scale: f32,
 }
 
 impl Noise {
     /// No noise at all.
-    pub const NONE: Self = Self { variances: [[0.0; 3]; BINS] };
+    pub const NONE: Self = Self { variances: [[0.0; 3]; BINS], scale: 1.0 };
 
     /// Variances at a brightness (mean of balanced samples, 1 = saturated).
     #[inline(always)]
     pub fn at(&self, brightness: f32) -> [f32; 3] {
-        self.variances[bin(brightness)]
+        self.variances[bin(brightness * self.scale)]
     }
 
     /// Measures the noise of a Bayer capture; other sensors have none here.
@@ -57,16 +60,21 @@ impl Noise {
     }
 
     fn of_windows(windows: Vec<Window>) -> Self {
-        let mut bins: Vec<Vec<[f32; 3]>> = vec![Vec::new(); BINS];
+        let mean = windows.iter().map(|w| f64::from(w.brightness)).sum::<f64>() / windows.len().max(1) as f64;
+        if mean.is_nan() || mean <= 0.0 {
+            return Self::NONE;
+        }
+        let scale = (1.0 / mean) as f32;
+        let mut bins: Vec<Vec<Window>> = (0..BINS).map(|_| Vec::new()).collect();
         for window in windows {
-            bins[bin(window.brightness)].push(window.variances);
+            bins[bin(window.brightness * scale)].push(window);
         }
         let known: Vec<Option<[f32; 3]>> = bins.into_iter().map(flat).collect();
         let nearest = |i: usize| {
             let by_distance = (0..BINS).filter(|&j| known[j].is_some()).min_by_key(|&j| j.abs_diff(i));
             by_distance.and_then(|j| known[j]).unwrap_or_default()
         };
-        Self { variances: std::array::from_fn(nearest) }
+        Self { variances: std::array::from_fn(nearest), scale }
     }
 }
 
@@ -77,22 +85,34 @@ fn bin(brightness: f32) -> usize {
     (half_octave.saturating_sub(FIRST_EXPONENT << 1) as usize).min(BINS - 1)
 }
 
-/// Mean variances of the flat ones among windows of one brightness.
-fn flat(mut windows: Vec<[f32; 3]>) -> Option<[f32; 3]> {
+/// Variances in the flat ones among windows of one brightness. Near black the spread of the roots overstates the
+/// bias, elsewhere shading and texture do: the least of the estimates counts.
+fn flat(mut windows: Vec<Window>) -> Option<[f32; 3]> {
     if windows.len() < FEWEST_WINDOWS {
         return None;
     }
-    windows.sort_by(|a, b| a.iter().sum::<f32>().total_cmp(&b.iter().sum::<f32>()));
+    let roughness = |w: &Window| w.bend_x.iter().chain(&w.bend_y).sum::<f32>();
+    windows.sort_by(|a, b| roughness(a).total_cmp(&roughness(b)));
     let rank = |share: f64| (share * windows.len() as f64) as usize;
     let chosen = &windows[rank(FLAT_RANKS.0)..rank(FLAT_RANKS.1).max(rank(FLAT_RANKS.0) + 1)];
-    let count = chosen.len() as f32;
-    Some([0, 1, 2].map(|c| (chosen.iter().map(|v| v[c]).sum::<f32>() / count / SELECTION).max(0.0)))
+    let mean = |estimate: fn(&Window) -> [f32; 3], c: usize| {
+        chosen.iter().map(|w| estimate(w)[c]).sum::<f32>() / chosen.len() as f32
+    };
+    Some([0, 1, 2].map(|c| {
+        let least = mean(|w| w.spread, c).min(mean(|w| w.bend_x, c)).min(mean(|w| w.bend_y, c));
+        (least / SELECTION).max(0.0)
+    }))
 }
 
 /// What one window of the picture shows.
 struct Window {
     brightness: f32,
-    variances: [f32; 3],
+    /// Mean of the light less the square of the mean root.
+    spread: [f32; 3],
+    /// Variance of the roots from second differences along rows.
+    bend_x: [f32; 3],
+    /// The same along columns.
+    bend_y: [f32; 3],
 }
 
 fn windows<T: Copy + Into<f32> + Sync>(
@@ -133,6 +153,8 @@ fn windows<T: Copy + Into<f32> + Sync>(
 /// Brightness and variances of the window that begins in column `left` of a strip.
 fn window(strip: &[f32], width: usize, left: usize, cfa: &Cfa, (x0, y0): (usize, usize)) -> Window {
     let (mut light, mut roots, mut counts) = ([0f32; 3], [0f32; 3], [0f32; 3]);
+    let (mut bend_x, mut bend_y, mut bends) = ([0f32; 3], [0f32; 3], [0f32; 3]);
+    let root = |x: usize, y: usize| signed_sqrt(strip[y * width + left + x]);
     for y in 0..WINDOW {
         for x in 0..WINDOW {
             let v = strip[y * width + left + x];
@@ -144,14 +166,24 @@ fn window(strip: &[f32], width: usize, left: usize, cfa: &Cfa, (x0, y0): (usize,
             light[c] += v;
             roots[c] += signed_sqrt(v);
             counts[c] += 1.0;
+            // Second differences between samples of one colour: shading does not show in them.
+            if (2..WINDOW - 2).contains(&x) && (2..WINDOW - 2).contains(&y) {
+                bend_x[c] += (root(x - 2, y) - 2.0 * root(x, y) + root(x + 2, y)).powi(2);
+                bend_y[c] += (root(x, y - 2) - 2.0 * root(x, y) + root(x, y + 2)).powi(2);
+                bends[c] += 6.0;
+            }
         }
     }
-    let variance = |c: usize| {
+    let spread = |c: usize| {
         let n = counts[c];
         (light[c] / n - signed_square(roots[c] / n)) * (n / (n - 1.0))
     };
-    let brightness = light.iter().sum::<f32>() / (WINDOW * WINDOW) as f32;
-    Window { brightness, variances: [variance(0), variance(1), variance(2)] }
+    Window {
+        brightness: light.iter().sum::<f32>() / (WINDOW * WINDOW) as f32,
+        spread: [spread(0), spread(1), spread(2)],
+        bend_x: [0, 1, 2].map(|c| bend_x[c] / bends[c]),
+        bend_y: [0, 1, 2].map(|c| bend_y[c] / bends[c]),
+    }
 }
 
 #[cfg(test)]
@@ -171,7 +203,8 @@ mod tests {
         let windows = (0..1000)
             .map(|i| {
                 let variance = if i % 2 == 0 { 0.01 + i as f32 * 1e-3 } else { 1e-4 };
-                Window { brightness: 0.2, variances: [2.0 * variance, variance, variance] }
+                let estimate = [2.0 * variance, variance, variance];
+                Window { brightness: 0.2, spread: estimate, bend_x: estimate, bend_y: estimate }
             })
             .collect();
         let noise = Noise::of_windows(windows);
@@ -179,5 +212,6 @@ mod tests {
         assert!((green * SELECTION - 1e-4).abs() < 1e-6 && (red / green - 2.0).abs() < 1e-3);
         // Brightnesses that no window has take the nearest.
         assert_eq!(noise.at(0.001), noise.at(0.2));
+        assert_eq!(Noise::of_windows(Vec::new()), Noise::NONE);
     }
 }

@@ -23,7 +23,11 @@ impl Plan {
     pub fn render_in_tiles(&self, capture: &Capture, columns: usize, rows: usize) -> Picture {
         let size = self.size();
         let count = 3 * size.area();
-        let cut = Cut { size, columns: columns.max(1), rows: rows.max(1) };
+        let cut = Cut {
+            size,
+            columns: columns.clamp(1, size.width.max(1)),
+            rows: rows.clamp(1, size.height.max(1)),
+        };
         let samples = match self.bits {
             Bits::Eight => {
                 let mut out = vec![0u8; count];

@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use crate::level::Levels;
 
 /// Light below this share of the white level is never taken for clipped.
-const LOWEST: f32 = 0.5;
+const LOWEST: f32 = 0.8;
 /// Width of a bin, as a share of the white level.
 const BIN: f32 = 0.001;
 /// Bins from `LOWEST` to a little above the white level.
-const BINS: usize = 512;
+const BINS: usize = 256;
 
 /// A heap this close to the white level is at the white level.
 const SAME: f32 = 0.995;
@@ -34,7 +34,7 @@ pub fn saturation(capture: &Capture, levels: &Levels) -> [f32; 3] {
         Counts::U16(counts) => count(capture, counts, levels),
         Counts::F32(counts) => count(capture, counts, levels),
     };
-    histogram.map(|channel| top_of_heap(&channel))
+    common(histogram.map(|channel| top_of_heap(&channel)), &histogram)
 }
 
 fn count<T: Copy + Into<f32> + Sync>(capture: &Capture, counts: &Mosaic<T>, levels: &Levels) -> Histogram {
@@ -71,6 +71,22 @@ fn count<T: Copy + Into<f32> + Sync>(capture: &Capture, counts: &Mosaic<T>, leve
     })
 }
 
+/// Keeps the heaps that lie at the converter's limit, which is one for all channels: a heap below which another
+/// channel goes on is only an even surface.
+fn common(levels: [f32; 3], histogram: &Histogram) -> [f32; 3] {
+    const TOLERANCE: f32 = 0.015;
+    let brightest = |channel: &[u64; BINS]| {
+        let mut above = 0;
+        let top = channel.iter().rposition(|&n| {
+            above += n;
+            above >= FEWEST
+        });
+        top.map_or(0.0, |top| LOWEST + top as f32 * BIN)
+    };
+    let limit = histogram.iter().map(brightest).fold(0.0, f32::max);
+    levels.map(|level| if level + TOLERANCE < limit { 1.0 } else { level })
+}
+
 /// The lower edge of the heap at the bright end, as a share of the white level; 1 when there is none.
 fn top_of_heap(bins: &[u64; BINS]) -> f32 {
     let mut above = 0;
@@ -100,19 +116,19 @@ mod tests {
     #[test]
     fn a_heap_below_the_white_level_is_where_the_channel_clips() {
         let mut bins = [10u64; BINS];
-        for n in &mut bins[391..] {
+        for n in &mut bins[131..] {
             *n = 0;
         }
-        (bins[388], bins[389], bins[390]) = (300, 4000, 500);
-        bins[450] = 3; // Hot pixels.
+        (bins[128], bins[129], bins[130]) = (300, 4000, 500);
+        bins[180] = 3; // Hot pixels.
         let found = top_of_heap(&bins);
-        assert!((found - (LOWEST + 389.0 * BIN)).abs() < 1.5 * BIN, "{found}");
+        assert!((found - (LOWEST + 129.0 * BIN)).abs() < 1.5 * BIN, "{found}");
     }
 
     #[test]
     fn a_picture_that_just_ends_does_not_clip() {
         let mut bins = [0u64; BINS];
-        for (i, n) in bins.iter_mut().take(400).enumerate() {
+        for (i, n) in bins.iter_mut().take(200).enumerate() {
             *n = 2000 - 5 * i as u64;
         }
         assert!((top_of_heap(&bins) - 1.0).abs() < 1e-6);

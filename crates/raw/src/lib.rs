@@ -53,6 +53,12 @@ pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture
     match decoder {
         Decoder::Flashraw => guarded("flashraw", || flash::decode(bytes, &container, limits)),
         Decoder::Rawloader => {
+            // rawloader takes a file that ends too early for a whole one; flashraw says so.
+            if let Err(damaged @ Error::Damaged { .. }) =
+                guarded("flashraw", || flash::decode(bytes, &container, limits).map(drop))
+            {
+                return Err(damaged);
+            }
             // Everything but the samples comes from flashraw's reading of the headers and our own.
             let header = guarded("flashraw", || flash::header(bytes, &container, limits))?;
             guarded("rawloader", || loader::decode(bytes, header, limits))

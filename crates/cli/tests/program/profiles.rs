@@ -1,0 +1,166 @@
+//! Which profile gives the colours, and that it is said.
+
+use super::*;
+
+/// A root polynomial of order 2 whose terms sum to the white of D50.
+fn profile(make: &str, model: &str) -> String {
+    format!(
+        r#"format = "darkroot profile"
+version = 1
+origin = "written by hand for a test"
+
+[camera]
+make = "{make}"
+model = "{model}"
+
+[[calibration]]
+light = "D55"
+xy = [0.3324, 0.3474]
+model = "root-2"
+
+[calibration.terms]
+r = [0.68, 0.3, 0.02]
+g = [0.16, 0.72, -0.02]
+b = [0.1, -0.04, 0.8]
+"(rg)^1/2" = [0.06, 0.05, -0.03]
+"(gb)^1/2" = [-0.05, 0.02, 0.05]
+"(rb)^1/2" = [0.0142, -0.05, 0.0049]
+"#
+    )
+}
+
+/// Develops to a PNG; its bytes and what was said.
+fn developed(desk: &Desk, arguments: &[&str]) -> (Vec<u8>, String) {
+    let run = desk.develop(&[&["a.dng", "-o", "o.png", "--overwrite"], arguments].concat());
+    (desk.read("o.png"), run.err)
+}
+
+#[test]
+fn the_colours_of_the_files_own_matrix_are_said() {
+    let desk = Desk::with_dng();
+    desk.put("b.nef", small_nef());
+    assert!(desk.develop(&["a.dng"]).err.contains("colours: matrix in the file"));
+    let nef = desk.develop(&["b.nef", "--profile", "matrix"]).err;
+    assert!(nef.contains("colours: camera matrix"), "{nef}");
+}
+
+#[test]
+fn a_profile_file_for_the_camera_gives_the_colours() {
+    let desk = Desk::with_dng();
+    desk.put("my.toml", profile("Darkroot", "Simulated One"));
+    let (matrix, _) = developed(&desk, &[]);
+    let (own, err) = developed(&desk, &["--profile", "my.toml"]);
+    assert!(own != matrix);
+    assert!(err.contains("profile for Darkroot Simulated One (D55), my.toml"), "{err}");
+}
+
+#[test]
+fn a_profile_for_another_camera_is_refused_and_both_are_named() {
+    let desk = Desk::with_dng();
+    desk.put("my.toml", profile("Nikon", "D700"));
+    let arguments = ["develop", "a.dng", "--profile", "my.toml"];
+    desk.fails(1, &arguments, &["my.toml", "Nikon D700", "Darkroot Simulated One", "a.dng", "aliases"]);
+    assert_eq!(desk.names(), ["a.dng", "my.toml"]);
+}
+
+#[test]
+fn an_alias_makes_a_profile_fit() {
+    let desk = Desk::with_dng();
+    let text = profile("Nikon", "D700")
+        .replace("model = \"D700\"", "model = \"D700\"\naliases = [\"DARKROOT Simulated one\"]");
+    desk.put("my.toml", text);
+    let (_, err) = developed(&desk, &["--profile", "my.toml"]);
+    assert!(err.contains("profile for Nikon D700"), "{err}");
+}
+
+#[test]
+fn a_profile_file_that_is_broken_says_where() {
+    let desk = Desk::with_dng();
+    let good = profile("Darkroot", "Simulated One");
+    let breaks: [(&str, &str, &str); 6] = [
+        ("[camera]", "[camera", "profile"),
+        ("version = 1", "version = 2", "version 2"),
+        ("\"(rb)^1/2\" = [0.0142, -0.05, 0.0049]\n", "", "missing"),
+        ("0.68", "nan", "not a number"),
+        ("origin", "orgin", "orgin"),
+        ("root-2", "root-7", "root-7"),
+    ];
+    for (from, to, word) in breaks {
+        assert!(good.contains(from));
+        desk.put("my.toml", good.replacen(from, to, 1));
+        desk.fails(1, &["develop", "a.dng", "--profile", "my.toml"], &["my.toml", word]);
+    }
+    desk.put("my.toml", [0xff, 0xfe, 0x00]);
+    desk.fails(1, &["develop", "a.dng", "--profile", "my.toml"], &["my.toml"]);
+    desk.fails(1, &["develop", "a.dng", "--profile", "none.toml"], &["none.toml", "no such file"]);
+    assert_eq!(desk.names(), ["a.dng", "my.toml"]);
+}
+
+#[test]
+fn a_profile_in_the_users_folder_is_found_by_its_camera() {
+    let desk = Desk::with_dng();
+    let (matrix, _) = developed(&desk, &[]);
+    let folder = desk.data.path().join("darkroot/profiles/any/depth");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("other.toml"), profile("Nikon", "D700")).unwrap();
+    std::fs::write(folder.join("mine.toml"), profile("Darkroot", "Simulated One")).unwrap();
+    let (own, err) = developed(&desk, &[]);
+    assert!(own != matrix);
+    assert!(err.contains("profile for Darkroot Simulated One") && err.contains("mine.toml"), "{err}");
+    let inspected = desk.run(&["inspect", "a.dng"]).out;
+    assert!(inspected.contains("mine.toml"), "{inspected}");
+
+    let (by_matrix, err) = developed(&desk, &["--profile", "matrix"]);
+    assert!(by_matrix == matrix && err.contains("matrix in the file"), "{err}");
+}
+
+#[test]
+fn the_folder_under_the_home_serves_where_no_data_folder_is_named() {
+    let desk = Desk::with_dng();
+    let folder = desk.data.path().join(".local/share/darkroot/profiles");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("mine.toml"), profile("Darkroot", "Simulated One")).unwrap();
+    // The specification has empty and relative paths ignored.
+    for data in [None, Some(""), Some("relative")] {
+        let mut command = desk.command(&["develop", "a.dng", "--overwrite"]);
+        match data {
+            Some(path) => command.env("XDG_DATA_HOME", path),
+            None => command.env_remove("XDG_DATA_HOME"),
+        };
+        let run = Run::of(&command.output().unwrap(), &["develop"]);
+        assert!(run.code == 0 && run.err.contains("mine.toml"), "{data:?}: {}", run.err);
+    }
+}
+
+#[test]
+fn a_broken_profile_in_the_users_folder_is_said_and_left_out() {
+    let desk = Desk::with_dng();
+    let folder = desk.data.path().join("darkroot/profiles");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("broken.toml"), "version = ").unwrap();
+    std::fs::write(folder.join("readme.txt"), "no profile").unwrap();
+    let (_, err) = developed(&desk, &[]);
+    assert!(err.contains("warning: ") && err.contains("broken.toml") && err.contains("not used"), "{err}");
+    assert!(!err.contains("readme.txt") && err.contains("matrix in the file"), "{err}");
+}
+
+#[test]
+fn a_profile_of_the_user_wins_over_one_that_is_built_in() {
+    let store = darkroot::ProfileStore::builtin();
+    let Some(built_in) = store.all().first() else {
+        eprintln!("skipped: no profile is built in");
+        return;
+    };
+    let camera = built_in.profile.camera();
+    let mut capture = expose(&Scene::still_life(FRAME), &Camera::simulated_one(), &Exposure::default());
+    (capture.camera.make, capture.camera.model) = (camera.make.clone(), camera.model.clone());
+    let desk = Desk::new();
+    desk.put("a.dng", dng::write(&capture, dng::Storage::JpegStrip));
+    let (before, err) = developed(&desk, &[]);
+    assert!(err.contains("built in") && err.contains(&camera.name()), "{err}");
+    let folder = desk.data.path().join("darkroot/profiles");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("mine.toml"), profile(&camera.make, &camera.model)).unwrap();
+    let (after, err) = developed(&desk, &[]);
+    assert!(err.contains("mine.toml") && !err.contains("built in") && before != after, "{err}");
+}

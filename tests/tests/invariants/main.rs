@@ -1,0 +1,16 @@
+//! What must hold of every picture, measured on simulated captures whose light is known.
+
+#![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
+#![allow(clippy::float_cmp)] // Some facts are about the same bits.
+
+mod black_level;
+mod corrections;
+mod crop;
+mod exposure;
+mod grey;
+mod highlights;
+mod hostile;
+mod numbers;
+mod tiles;
+mod truth;
+mod white_balance;
