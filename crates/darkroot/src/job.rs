@@ -58,7 +58,7 @@ pub struct Report {
     pub profile: Option<String>,
     /// Correlated colour temperature of the light, K, and tint, where known.
     pub kelvin: Option<f64>,
-    /// Tint of the light: magenta positive.
+    /// Tint of the light: positive above the Planckian locus (greenish light), as raw developers show it.
     pub tint: Option<f64>,
     /// White-balance multipliers of red, green and blue; the smallest is 1.
     pub multipliers: [f32; 3],

@@ -17,7 +17,7 @@ use crate::tone::Curve;
 use crate::transfer::Encoder;
 use crate::white::{self as camera_white, CameraMatrix};
 
-/// Why a capture cannot be developed as asked. Each message completes "<file>: ".
+/// Why a capture cannot be developed as asked. Each message completes "FILE: ".
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -35,7 +35,8 @@ pub enum Balance {
     Kelvin {
         /// Correlated colour temperature, K.
         kelvin: f64,
-        /// Distance from the Planckian locus, 3000 units per unit of CIE 1960 uv, magenta positive.
+        /// Distance of the light from the Planckian locus, 3000 units per unit of CIE 1960 uv; positive makes the
+        /// picture more magenta.
         tint: f64,
     },
     /// A grey surface in the picture: centre and side of a square, in pixels of the developed picture.

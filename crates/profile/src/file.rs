@@ -29,7 +29,7 @@ use serde::Deserialize;
 
 use crate::{Calibration, Light, Model, Order, Profile, ProfileCamera};
 
-/// What can be wrong with a profile file. Each message completes "<file>: ".
+/// What can be wrong with a profile file. Each message completes "FILE: ".
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

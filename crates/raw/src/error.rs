@@ -1,6 +1,6 @@
 //! What can be wrong with a file.
 
-/// Why a file could not be decoded. Each message completes "<file>: " and says what to do.
+/// Why a file could not be decoded. Each message completes "FILE: " and says what to do.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -1,6 +1,6 @@
 //! Bytes of a raw file to a [`Capture`]: the only part of Darkroot that meets hostile input.
 //!
-//! [`decode`] screens the container first ([`screen`]), so that no decoder sees a file whose directories loop
+//! [`decode`] screens the container first (`screen.rs`), so that no decoder sees a file whose directories loop
 //! or whose sizes are beyond the [`Limits`]. Then one of two decoders runs, behind a guard that turns a panic
 //! into an error: flashraw (default) or rawloader (older makers, cross-check).
 //!
