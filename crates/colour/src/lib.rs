@@ -1,8 +1,8 @@
 //! Colour science without pictures.
 //!
-//! Tristimulus values, white points, spectra and the standard observer, correlated colour temperature,
-//! chromatic adaptation, colour differences, RGB spaces and their transfer curves. Everything is `f64`, pure
-//! and free of state.
+//! Tristimulus values, CIELAB, CIELUV, white points, spectra measured or standard, the standard observer,
+//! correlated colour temperature, chromatic adaptation, colour differences, RGB spaces and their transfer curves.
+//! Everything is `f64`, pure and free of state.
 //!
 //! **What it does not do:** it knows no picture, no camera and no file.
 //!
@@ -12,9 +12,14 @@
 pub mod xyz;
 pub use xyz::{Lab, Xy, Xyz};
 
+pub mod luv;
+pub use luv::{Luv, UvPrime};
+
 pub mod white;
 
 pub mod adaptation;
+pub use adaptation::Cat;
+
 pub mod difference;
 pub mod temperature;
 
@@ -24,6 +29,18 @@ pub use space::{RgbSpace, TransferCurve};
 pub mod spectrum;
 pub use spectrum::Spectrum;
 
+pub mod measured;
+pub use measured::{Coverage, Measured, SpectrumError};
+
+pub mod illuminant;
+pub use illuminant::Illuminant;
+
+pub mod observer;
+
+pub mod weights;
+pub use weights::TristimulusWeights;
+
+mod sprague;
 mod tables;
 
 /// A 3x3 matrix applied to column vectors.

@@ -131,6 +131,14 @@ impl RgbSpace {
         curve: TransferCurve::Linear,
     };
 
+    /// ACEScg (AP1 primaries, linear), Academy S-2014-004.
+    pub const ACESCG: Self = Self {
+        name: "ACEScg",
+        primaries: [Xy::new(0.713, 0.293), Xy::new(0.165, 0.830), Xy::new(0.128, 0.044)],
+        white: white::ACES_XY,
+        curve: TransferCurve::Linear,
+    };
+
     /// Linear RGB to XYZ relative to this space's own white (SMPTE RP 177).
     pub fn to_xyz(&self) -> Matrix3 {
         let columns = self.primaries.map(|p| Vector3::new(p.x, p.y, 1.0 - p.x - p.y));
@@ -162,7 +170,7 @@ impl RgbSpace {
 mod tests {
     use super::*;
 
-    const SPACES: [RgbSpace; 7] = [
+    const SPACES: [RgbSpace; 8] = [
         RgbSpace::SRGB,
         RgbSpace::DISPLAY_P3,
         RgbSpace::ADOBE_RGB,
@@ -170,6 +178,7 @@ mod tests {
         RgbSpace::REC2020,
         RgbSpace::ECIRGB_V2,
         RgbSpace::ACES2065_1,
+        RgbSpace::ACESCG,
     ];
 
     #[test]

@@ -1,6 +1,8 @@
-//! Spectra on one fixed grid, the standard observer, and illuminants that a formula gives.
+//! Spectra on one fixed grid, their tristimulus values, and lights that a formula gives.
 
-use crate::tables::{DAYLIGHT_S0, DAYLIGHT_S1, DAYLIGHT_S2, X_BAR, Y_BAR, Z_BAR};
+use crate::measured::{Measured, SpectrumError};
+use crate::tables::daylight::{DAYLIGHT_S0, DAYLIGHT_S1, DAYLIGHT_S2};
+use crate::tables::observer::{X_BAR, Y_BAR, Z_BAR};
 use crate::temperature::daylight_xy;
 use crate::{Xy, Xyz};
 
@@ -8,6 +10,8 @@ use crate::{Xy, Xyz};
 pub const SAMPLES: usize = 81;
 /// Wavelength of the first sample, nm.
 pub const FIRST_NM: f64 = 380.0;
+/// Wavelength of the last sample, nm.
+pub const LAST_NM: f64 = 780.0;
 /// Distance of two samples, nm.
 pub const STEP_NM: f64 = 5.0;
 
@@ -26,6 +30,12 @@ impl Spectrum {
         Self(std::array::from_fn(|i| f(Self::wavelength(i))))
     }
 
+    /// Measured samples at any ascending wavelengths (nm), resampled by linear interpolation and carried on flat at
+    /// the ends: [`Measured::spectrum`] in one call.
+    pub fn from_samples(wavelengths: &[f64], values: &[f64]) -> Result<Self, SpectrumError> {
+        Ok(Measured::new(wavelengths, values)?.spectrum())
+    }
+
     /// The same value everywhere (a perfect grey, illuminant E).
     pub fn constant(value: f64) -> Self {
         Self([value; SAMPLES])
@@ -34,6 +44,17 @@ impl Spectrum {
     /// Wavelength in nm of sample `i`.
     pub fn wavelength(i: usize) -> f64 {
         FIRST_NM + STEP_NM * i as f64
+    }
+
+    /// Value at `nm` by linear interpolation; the nearest end outside of 380..=780 nm.
+    pub fn at(&self, nm: f64) -> f64 {
+        interpolate(&self.0, nm)
+    }
+
+    /// The same spectrum, `k` times as strong.
+    #[must_use]
+    pub fn scaled(&self, k: f64) -> Self {
+        Self(self.0.map(|v| k * v))
     }
 
     /// Product sample by sample: a reflectance under a light, a light through a filter.
@@ -60,6 +81,12 @@ impl Spectrum {
         self.times(light).stimulus_xyz().scaled(1.0 / white.y)
     }
 
+    /// Tristimulus values of the perfect diffuser under this light, Y = 1; the light needs some luminance.
+    pub fn white(&self) -> Xyz {
+        let white = self.stimulus_xyz();
+        white.scaled(1.0 / white.y)
+    }
+
     /// Black-body radiation at `kelvin` (more than 0), relative, 1 at 560 nm (Planck's law).
     pub fn black_body(kelvin: f64) -> Self {
         Self::planck(kelvin, C2_NM_K)
@@ -71,7 +98,8 @@ impl Spectrum {
     }
 
     /// Daylight of the given correlated colour temperature, 4000 to 25000 K (CIE 015:2018, 4.2), about 100 at
-    /// 560 nm. Outside that range the nearest end is used. D65 is `daylight(6504.0)`, D50 `daylight(5003.0)`.
+    /// 560 nm. Outside that range the nearest end is used. `daylight(6504.0)` is nearly D65, whose table
+    /// ([`Illuminant`](crate::Illuminant)) was made with older constants: 1e-4 in x, y.
     pub fn daylight(kelvin: f64) -> Self {
         let Xy { x, y } = daylight_xy(kelvin);
         let m = 0.0241 + 0.2562 * x - 0.7341 * y;
@@ -86,6 +114,14 @@ impl Spectrum {
         let at_560 = power(560.0);
         Self::from_fn(|nm| power(nm) / at_560)
     }
+}
+
+/// Linear interpolation between samples; the nearest end outside.
+pub(crate) fn interpolate(samples: &[f64; SAMPLES], nm: f64) -> f64 {
+    let position = ((nm - FIRST_NM) / STEP_NM).clamp(0.0, (SAMPLES - 1) as f64);
+    let left = (position as usize).min(SAMPLES - 2);
+    let share = position - left as f64;
+    samples[left] + share * (samples[left + 1] - samples[left])
 }
 
 #[cfg(test)]

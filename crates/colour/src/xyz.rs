@@ -76,6 +76,30 @@ impl From<Xyz> for Vector3 {
     }
 }
 
+impl From<[f64; 3]> for Xyz {
+    fn from([x, y, z]: [f64; 3]) -> Self {
+        Self::new(x, y, z)
+    }
+}
+
+impl From<Xyz> for [f64; 3] {
+    fn from(c: Xyz) -> Self {
+        [c.x, c.y, c.z]
+    }
+}
+
+impl From<[f64; 3]> for Lab {
+    fn from([l, a, b]: [f64; 3]) -> Self {
+        Self { l, a, b }
+    }
+}
+
+impl From<Lab> for [f64; 3] {
+    fn from(c: Lab) -> Self {
+        [c.l, c.a, c.b]
+    }
+}
+
 impl Xy {
     /// Chromaticity from its two coordinates.
     pub const fn new(x: f64, y: f64) -> Self {
@@ -106,6 +130,11 @@ impl Lab {
     /// Chroma C\*ab = sqrt(a\*^2 + b\*^2).
     pub fn chroma(self) -> f64 {
         self.a.hypot(self.b)
+    }
+
+    /// Hue angle h_ab in degrees, 0 (red) up to 360, 90 is yellow; 0 for greys.
+    pub fn hue(self) -> f64 {
+        self.b.atan2(self.a).to_degrees().rem_euclid(360.0)
     }
 }
 
