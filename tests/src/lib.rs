@@ -9,7 +9,7 @@ use develop::{Bits, Look, Output, OutputSpace, Recipe};
 use photo::{
     BlackLevel, Capture, Counts, Layout, Mosaic, Picture, PictureSpace, Rect, Samples, Size, WhiteLevel,
 };
-use profile::{Calibration, Light, Model, Order, Profile, ProfileCamera};
+use profile::{Calibration, Kind, Light, Order, Origin, Profile, ProfileCamera, RootPolynomial};
 use simulate::camera::{filters, x_trans};
 use simulate::expose::expose;
 use simulate::{Camera, Exposure, Scene, chart};
@@ -120,16 +120,16 @@ pub fn bent_profile(capture: &Capture, order: u8) -> Profile {
             coefficients[i % 3][k] -= b;
         }
     }
-    let calibration = Calibration {
-        light: Light { name: "D55".into(), xy: colour::temperature::daylight_xy(5503.0) },
-        model: Model::new(order, coefficients).unwrap(),
-    };
+    let light = Light { name: "D55".into(), xy: colour::temperature::daylight_xy(5503.0) };
+    let model = RootPolynomial::new(order, coefficients).unwrap().into();
+    let calibration = Calibration::new(light, Kind::plain(order), model);
     let camera = ProfileCamera {
         make: capture.camera.common_make.clone(),
         model: capture.camera.common_model.clone(),
         aliases: Vec::new(),
     };
-    Profile::new(camera, vec![calibration], "written by hand for a test".into()).unwrap()
+    let origin = Origin { summary: "written by hand for a test".into(), ..Origin::default() };
+    Profile::new(camera, vec![calibration], origin).unwrap()
 }
 
 /// The profiles that facts about colour must hold for: the camera's matrices and root polynomials of each order.

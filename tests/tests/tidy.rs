@@ -159,7 +159,7 @@ fn fault(text: &str) -> Option<String> {
         Ok(profile) => profile,
         Err(error) => return Some(error.to_string()),
     };
-    if profile.origin().is_empty() {
+    if profile.origin().summary.is_empty() {
         return Some("has no origin: how was it made?".to_owned());
     }
     profile.calibrations().iter().find_map(|calibration| {
@@ -199,7 +199,7 @@ fn a_profile_that_tints_white_is_found() {
         std::fs::read_to_string(root().join("tests/golden/0015-root-polynomial/profile.toml")).unwrap();
     assert_eq!(fault(&good), None);
     assert!(fault(&good.replace("0.68", "0.69")).unwrap().contains("maps white to"));
-    assert!(fault(&good.replace("origin = \"written", "origin = \"\" #")).unwrap().contains("origin"));
+    assert!(fault(&good.replace("summary = \"written", "summary = \"\" #")).unwrap().contains("origin"));
 }
 
 #[derive(Deserialize)]

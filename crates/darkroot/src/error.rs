@@ -39,6 +39,14 @@ pub enum Error {
         /// What is wrong with it.
         source: profile::Error,
     },
+    /// A file of spectra is unusable.
+    #[error("{path}: {what}", path = path.display())]
+    Spectra {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, with what to do.
+        what: String,
+    },
     /// The profile is for another camera.
     #[error(
         "{path}: is a profile for {of}, but {input} was taken with {camera}; choose another `--profile`, or add the \

@@ -29,6 +29,9 @@ pub use job::{Report, Step, develop};
 pub mod inspect;
 pub use inspect::{Inspection, inspect, save_preview};
 
+pub mod spectra;
+pub use spectra::SpectraFile;
+
 pub mod store;
 pub use store::ProfileStore;
 

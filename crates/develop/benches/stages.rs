@@ -19,7 +19,7 @@ use photo::{
     BlackLevel, Camera, CameraSpace, Capture, Cfa, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Rgb,
     Size, Source, WhiteLevel,
 };
-use profile::{Model, Order, PlaneModel};
+use profile::{Order, PlaneModel, RootPolynomial};
 
 const SIZE: Size = Size { width: 1024, height: 512 };
 const BORDER: usize = 16;
@@ -75,7 +75,7 @@ fn capture() -> Capture {
 fn model(order: Order) -> PlaneModel {
     let terms = order.terms().len();
     let coefficients = (0..terms).map(|i| [0.5, 0.4, 0.3].map(|c| c / (1.0 + i as f64))).collect();
-    PlaneModel::new(&Model::new(order, coefficients).expect("a coefficient for each term"))
+    PlaneModel::new(&RootPolynomial::new(order, coefficients).expect("a coefficient for each term").into())
 }
 
 fn stages(c: &mut Criterion) {

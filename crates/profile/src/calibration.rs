@@ -1,9 +1,9 @@
 //! A camera's profile: one model per light, and which one serves which white.
 
-use colour::Xy;
+use colour::{Xy, Xyz};
 use colour::temperature::Temperature;
 
-use crate::Model;
+use crate::{Figures, Kind, Model};
 
 /// The camera that a profile is for.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -56,8 +56,55 @@ impl Light {
 pub struct Calibration {
     /// The light.
     pub light: Light,
+    /// How the model was fitted.
+    pub kind: Kind,
     /// Balanced camera RGB to XYZ relative to D50.
     pub model: Model,
+    /// How far the model is off.
+    pub figures: Figures,
+    /// The colours of the fit, where the profile keeps them.
+    pub patches: Vec<Patch>,
+}
+
+impl Calibration {
+    /// A calibration of which nothing is known but its model.
+    pub fn new(light: Light, kind: Kind, model: Model) -> Self {
+        Self { light, kind, model, figures: Figures::default(), patches: Vec::new() }
+    }
+}
+
+/// A colour of the fit and what the model makes of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patch {
+    /// Its name on the chart ("A1", "dark skin").
+    pub name: String,
+    /// Balanced camera RGB, 1 for the white of the light.
+    pub rgb: [f64; 3],
+    /// What it should be: XYZ relative to D50, Y = 1 for the white of the light.
+    pub xyz: Xyz,
+    /// CIEDE2000 between that and the model's XYZ.
+    pub de2000: f64,
+}
+
+/// Where a profile came from, as far as it is known; empty texts are not.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Origin {
+    /// In words.
+    pub summary: String,
+    /// The chart that was shot.
+    pub chart: String,
+    /// File with the reference colours or reflectances of the fit.
+    pub reference: String,
+    /// SHA-256 of that file, hexadecimal.
+    pub reference_sha256: String,
+    /// File with the camera's spectral sensitivities.
+    pub sensitivities: String,
+    /// SHA-256 of that file, hexadecimal.
+    pub sensitivities_sha256: String,
+    /// Day of the fit, YYYY-MM-DD.
+    pub date: String,
+    /// Program that made the fit, with its version.
+    pub program: String,
 }
 
 /// What one camera's colours mean.
@@ -66,13 +113,12 @@ pub struct Profile {
     camera: ProfileCamera,
     /// At least one, by falling temperature of the light (rising mired).
     calibrations: Vec<Calibration>,
-    /// Where the profile came from, in words.
-    origin: String,
+    origin: Origin,
 }
 
 impl Profile {
     /// A profile of these calibrations. `None` when there are none.
-    pub fn new(camera: ProfileCamera, mut calibrations: Vec<Calibration>, origin: String) -> Option<Self> {
+    pub fn new(camera: ProfileCamera, mut calibrations: Vec<Calibration>, origin: Origin) -> Option<Self> {
         calibrations.sort_by(|a, b| b.light.kelvin().total_cmp(&a.light.kelvin()));
         (!calibrations.is_empty()).then_some(Self { camera, calibrations, origin })
     }
@@ -87,8 +133,8 @@ impl Profile {
         &self.calibrations
     }
 
-    /// Where the profile came from, in words.
-    pub fn origin(&self) -> &str {
+    /// Where the profile came from.
+    pub fn origin(&self) -> &Origin {
         &self.origin
     }
 
@@ -118,12 +164,12 @@ mod tests {
     fn two_lights() -> Profile {
         let camera =
             ProfileCamera { make: "Nikon".into(), model: "D700".into(), aliases: vec!["NIKON D 700".into()] };
-        let calibration = |name: &str, xy, scale: f64| Calibration {
-            light: Light { name: name.into(), xy },
-            model: Model::linear(&(Matrix3::identity() * scale)),
+        let calibration = |name: &str, xy, scale: f64| {
+            let model = Model::linear(&(Matrix3::identity() * scale));
+            Calibration::new(Light { name: name.into(), xy }, Kind::Linear, model)
         };
         let both = vec![calibration("A", white::A_XY, 1.0), calibration("D65", white::D65_XY, 3.0)];
-        Profile::new(camera, both, "a test".into()).unwrap()
+        Profile::new(camera, both, Origin::default()).unwrap()
     }
 
     #[test]

@@ -1,107 +1,179 @@
-//! A model of one camera under one light, applied to single colours in `f64`.
+//! A model of one camera under one light: a sum of parts, applied to single colours in `f64`.
 
 use colour::{Matrix3, Vector3, Xyz};
 
-use crate::{Order, Term};
+use crate::{HuePlane, Order, Polynomial, Residual, RootPolynomial};
 
-/// Balanced camera RGB to XYZ relative to D50, homogeneous of degree one.
-#[derive(Debug, Clone, PartialEq)]
+/// Balanced camera RGB to XYZ, the sum of the parts that are there.
+///
+/// Every part but [`Polynomial`] is homogeneous of degree one: `model(k rgb) = k model(rgb)` for every k > 0. Parts
+/// make sums so that two models can always be mixed, be it between two lights or for a fit that is the mean of two.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
-    order: Order,
-    /// One column of X, Y, Z per term of the order.
-    coefficients: Vec<[f64; 3]>,
+    /// A matrix or a root polynomial.
+    pub root: Option<RootPolynomial>,
+    /// A matrix for each hue.
+    pub hue_plane: Option<HuePlane>,
+    /// A smooth function of chromaticity.
+    pub residual: Option<Residual>,
+    /// A plain polynomial, which breaks when the exposure changes: for comparison only.
+    pub polynomial: Option<Polynomial>,
+}
+
+/// What every part can do.
+pub trait Part: Sized {
+    /// Its share of the XYZ of one colour.
+    fn xyz(&self, rgb: [f64; 3]) -> Xyz;
+
+    /// The same part followed by a matrix on XYZ.
+    #[must_use]
+    fn then(&self, matrix: &Matrix3) -> Self;
+
+    /// The part that gives the sum of both.
+    #[must_use]
+    fn plus(&self, other: &Self) -> Self;
 }
 
 impl Model {
-    /// A root polynomial of `order` with X, Y and Z coefficients for each of `order.terms()`. `None` when their
-    /// number is wrong or one is not finite.
-    pub fn new(order: Order, coefficients: Vec<[f64; 3]>) -> Option<Self> {
-        let sound =
-            coefficients.len() == order.terms().len() && coefficients.iter().flatten().all(|c| c.is_finite());
-        sound.then_some(Self { order, coefficients })
-    }
-
-    /// A matrix as a model of order 1. Values that are not finite count as 0.
+    /// A matrix. Values that are not finite count as 0.
     pub fn linear(matrix: &Matrix3) -> Self {
-        let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
-        let column = |c: usize| [0, 1, 2].map(|row| finite(matrix[(row, c)]));
-        Self { order: Order::One, coefficients: vec![column(0), column(1), column(2)] }
-    }
-
-    /// Its order.
-    pub fn order(&self) -> Order {
-        self.order
-    }
-
-    /// Each term with its coefficients for X, Y and Z.
-    pub fn terms(&self) -> impl Iterator<Item = (Term, [f64; 3])> + '_ {
-        self.order.terms().iter().copied().zip(self.coefficients.iter().copied())
+        RootPolynomial::linear(matrix).into()
     }
 
     /// XYZ of one colour.
     pub fn xyz(&self, rgb: [f64; 3]) -> Xyz {
-        let sum =
-            self.terms().fold(Vector3::zeros(), |sum, (term, c)| sum + Vector3::from(c) * term.value(rgb));
+        fn share<P: Part>(part: Option<&P>, rgb: [f64; 3]) -> Vector3 {
+            part.map_or_else(Vector3::zeros, |part| part.xyz(rgb).into())
+        }
+        let sum = share(self.root.as_ref(), rgb)
+            + share(self.hue_plane.as_ref(), rgb)
+            + share(self.residual.as_ref(), rgb)
+            + share(self.polynomial.as_ref(), rgb);
         sum.into()
+    }
+
+    /// Whether twice the light gives twice the colour.
+    pub fn is_exposure_invariant(&self) -> bool {
+        self.polynomial.is_none()
+    }
+
+    /// Order of the root polynomial; 1 where there is none.
+    pub fn order(&self) -> Order {
+        self.root.as_ref().map_or(Order::One, RootPolynomial::order)
     }
 
     /// The same model followed by a matrix on XYZ.
     #[must_use]
     pub fn then(&self, matrix: &Matrix3) -> Self {
-        let through = |c: &[f64; 3]| (matrix * Vector3::from(*c)).into();
-        Self { order: self.order, coefficients: self.coefficients.iter().map(through).collect() }
+        Self {
+            root: self.root.as_ref().map(|part| part.then(matrix)),
+            hue_plane: self.hue_plane.as_ref().map(|part| part.then(matrix)),
+            residual: self.residual.as_ref().map(|part| part.then(matrix)),
+            polynomial: self.polynomial.as_ref().map(|part| part.then(matrix)),
+        }
     }
 
-    /// Weighted mean of two models: `weight` of `other`, 0..=1. The result has the higher of the two orders.
+    /// Weighted mean of two models: `weight` of `other`, 0..=1.
     #[must_use]
     pub fn mix(&self, other: &Self, weight: f64) -> Self {
-        let order = self.order.max(other.order);
-        let of = |model: &Self, i: usize| model.coefficients.get(i).copied().unwrap_or_default();
-        let coefficients = (0..order.terms().len())
-            .map(|i| {
-                let (a, b) = (of(self, i), of(other, i));
-                [0, 1, 2].map(|k| a[k] + weight * (b[k] - a[k]))
-            })
-            .collect();
-        Self { order, coefficients }
+        fn mixed<P: Part>(one: Option<&P>, other: Option<&P>, weight: f64) -> Option<P> {
+            let scaled = |part: &P, k: f64| part.then(&(Matrix3::identity() * k));
+            match (one.map(|p| scaled(p, 1.0 - weight)), other.map(|p| scaled(p, weight))) {
+                (Some(a), Some(b)) => Some(a.plus(&b)),
+                (a, b) => a.or(b),
+            }
+        }
+        Self {
+            root: mixed(self.root.as_ref(), other.root.as_ref(), weight),
+            hue_plane: mixed(self.hue_plane.as_ref(), other.hue_plane.as_ref(), weight),
+            residual: mixed(self.residual.as_ref(), other.residual.as_ref(), weight),
+            polynomial: mixed(self.polynomial.as_ref(), other.polynomial.as_ref(), weight),
+        }
+    }
+
+    /// Derivatives at a colour: column c is the change of XYZ with channel c. By central differences, a step of
+    /// 1e-5 of the largest channel wide.
+    pub fn jacobian(&self, rgb: [f64; 3]) -> Matrix3 {
+        let step = 1e-5 * rgb.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+        let column = |c: usize| {
+            let at = |h: f64| {
+                let mut moved = rgb;
+                moved[c] += h;
+                Vector3::from(self.xyz(moved))
+            };
+            (at(step) - at(-step)) / (2.0 * step)
+        };
+        Matrix3::from_columns(&[column(0), column(1), column(2)])
+    }
+}
+
+impl From<RootPolynomial> for Model {
+    fn from(part: RootPolynomial) -> Self {
+        Self { root: Some(part), ..Self::default() }
+    }
+}
+
+impl From<HuePlane> for Model {
+    fn from(part: HuePlane) -> Self {
+        Self { hue_plane: Some(part), ..Self::default() }
+    }
+}
+
+impl From<Polynomial> for Model {
+    fn from(part: Polynomial) -> Self {
+        Self { polynomial: Some(part), ..Self::default() }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples_for_tests::{all_parts, close};
+    use proptest::prelude::*;
 
-    pub(crate) fn bent(order: Order) -> Model {
-        let coefficients = (0..order.terms().len())
-            .map(|i| [0.3 / (1.0 + i as f64), 0.4 / (2.0 + i as f64), 0.1 * (i as f64 - 3.0)])
-            .collect();
-        Model::new(order, coefficients).unwrap()
-    }
+    proptest! {
+        #[test]
+        fn twice_the_light_is_twice_the_colour(
+            exponent in -20i32..=20, r in 0f64..4.0, g in 0f64..4.0, b in 0f64..4.0,
+        ) {
+            let k = 2f64.powi(exponent);
+            for model in all_parts().iter().filter(|m| m.is_exposure_invariant()) {
+                let one = model.xyz([r, g, b]);
+                prop_assert!(close(model.xyz([r * k, g * k, b * k]), one.scaled(k), 1e-11 * k), "{model:?}");
+            }
+        }
 
-    #[test]
-    fn twice_the_light_is_twice_the_colour() {
-        for order in [Order::One, Order::Two, Order::Three, Order::Four] {
-            let model = bent(order);
-            for k in [2f64.powi(-20), 0.01, 3.0, 2f64.powi(20)] {
-                let (one, two) = (model.xyz([0.2, 0.5, 0.1]), model.xyz([0.2 * k, 0.5 * k, 0.1 * k]));
-                for (a, b) in [(one.x, two.x), (one.y, two.y), (one.z, two.z)] {
-                    assert!((a * k - b).abs() < 1e-12 * (a * k).abs().max(k), "{order:?} {k}");
+        #[test]
+        fn halfway_between_two_models_is_the_mean_colour(r in 0f64..4.0, g in 0f64..4.0, b in 0f64..4.0) {
+            let rgb = [r, g, b];
+            for one in all_parts() {
+                for other in all_parts() {
+                    let mean = (Vector3::from(one.xyz(rgb)) + Vector3::from(other.xyz(rgb))) / 2.0;
+                    prop_assert!(close(one.mix(&other, 0.5).xyz(rgb), mean.into(), 1e-9));
                 }
             }
         }
-    }
 
-    #[test]
-    fn halfway_between_two_models_is_the_mean_colour() {
-        let (one, two) = (bent(Order::Two), bent(Order::Four));
-        let rgb = [0.7, 0.2, 0.4];
-        let mean = one.mix(&two, 0.5).xyz(rgb);
-        assert!((mean.y - (one.xyz(rgb).y + two.xyz(rgb).y) / 2.0).abs() < 1e-14);
-    }
+        #[test]
+        fn a_matrix_after_a_model_is_the_matrix_of_its_colour(
+            r in 0f64..4.0, g in 0f64..4.0, b in 0f64..4.0,
+        ) {
+            let matrix = Matrix3::new(0.9, 0.1, -0.2, 0.3, 0.8, 0.1, 0.0, -0.1, 1.2);
+            for model in all_parts() {
+                let after = matrix * Vector3::from(model.xyz([r, g, b]));
+                prop_assert!(close(model.then(&matrix).xyz([r, g, b]), after.into(), 1e-9));
+            }
+        }
 
-    #[test]
-    fn wrong_numbers_of_coefficients_are_refused() {
-        assert_eq!(Model::new(Order::Two, vec![[0.0; 3]; 5]), None);
-        assert_eq!(Model::new(Order::One, vec![[f64::NAN; 3]; 3]), None);
+        #[test]
+        fn every_colour_of_every_model_is_finite(r in 0f64..=4.0, g in 0f64..=4.0, b in 0f64..=4.0) {
+            let edges = [[0.0; 3], [r, 0.0, 0.0], [0.0, g, 0.0], [0.0, 0.0, b], [r, g, 0.0], [r, g, b]];
+            for model in all_parts() {
+                for rgb in edges {
+                    let c = model.xyz(rgb);
+                    prop_assert!(c.x.is_finite() && c.y.is_finite() && c.z.is_finite(), "{rgb:?}");
+                }
+            }
+        }
     }
 }

@@ -7,11 +7,13 @@ fn profile(make: &str, model: &str) -> String {
     format!(
         r#"format = "darkroot profile"
 version = 1
-origin = "written by hand for a test"
 
 [camera]
 make = "{make}"
 model = "{model}"
+
+[origin]
+summary = "written by hand for a test"
 
 [[calibration]]
 light = "D55"

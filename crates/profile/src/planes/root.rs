@@ -1,52 +1,31 @@
-//! A model applied to planes of `f32`: the fast path.
+//! A root polynomial over planes.
 //!
 //! All terms are products of a few shared roots: three square roots give order 2, three cube roots more give
-//! order 3, three fourth roots (roots of the square roots) order 4. No power function is called. Loops are plain
-//! and vectorised by the compiler for AVX2 where the machine has it; additions and multiplications are never
-//! fused, so every machine gives the same bits.
+//! order 3, three fourth roots (roots of the square roots) order 4. No power function is called.
 
-use crate::simd::vectorised;
-use crate::{Model, Order};
+use super::{BLOCK, Out, PlanePart};
+use crate::{Order, RootPolynomial};
 
-/// Pixels handled at a time: their roots stay in the first-level cache.
-const BLOCK: usize = 256;
-
-/// A model with its coefficients as the loops want them.
+/// A root polynomial with its coefficients as the loops want them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlaneModel {
+pub(super) struct RootPlanes {
     order: Order,
     /// For each output channel, the coefficients of all terms.
     coefficients: [Vec<f32>; 3],
 }
 
-impl PlaneModel {
-    /// Prepares a model.
-    pub fn new(model: &Model) -> Self {
-        let channel = |k: usize| model.terms().map(|(_, c)| c[k] as f32).collect();
-        Self { order: model.order(), coefficients: [channel(0), channel(1), channel(2)] }
+impl RootPlanes {
+    pub(super) fn new(part: &RootPolynomial) -> Self {
+        let channel = |k: usize| part.terms().map(|(_, c)| c[k] as f32).collect();
+        Self { order: part.order(), coefficients: [channel(0), channel(1), channel(2)] }
     }
+}
 
-    /// Replaces the three planes, of equal length, by the model's values for them.
-    pub fn apply(&self, planes: [&mut [f32]; 3]) {
-        let [r, g, b] = planes;
-        let length = r.len().min(g.len()).min(b.len());
-        let (r, g, b) = (&mut r[..length], &mut g[..length], &mut b[..length]);
-        vectorised(
-            #[inline(always)]
-            || {
-                let blocks = r.chunks_mut(BLOCK).zip(g.chunks_mut(BLOCK)).zip(b.chunks_mut(BLOCK));
-                for ((r, g), b) in blocks {
-                    self.block(r, g, b);
-                }
-            },
-        );
-    }
-
+impl PlanePart for RootPlanes {
     #[inline(always)]
-    fn block(&self, r: &mut [f32], g: &mut [f32], b: &mut [f32]) {
+    fn add(&self, [r, g, b]: [&[f32]; 3], out: &mut Out) {
         let n = r.len();
-        let mut out = [[0f32; BLOCK]; 3];
-        let mut terms = Terms { channels: &self.coefficients, next: 0, out: &mut out, n };
+        let mut terms = Terms { channels: &self.coefficients, next: 0, out, n };
         terms.add(r, |v| v);
         terms.add(g, |v| v);
         terms.add(b, |v| v);
@@ -78,9 +57,6 @@ impl PlaneModel {
                 terms.add3(&fr, &fg, &fb, |r, g, b| (b * b) * (r * g));
             }
         }
-        r.copy_from_slice(&out[0][..n]);
-        g.copy_from_slice(&out[1][..n]);
-        b.copy_from_slice(&out[2][..n]);
     }
 }
 
@@ -88,7 +64,7 @@ impl PlaneModel {
 struct Terms<'a> {
     channels: &'a [Vec<f32>; 3],
     next: usize,
-    out: &'a mut [[f32; BLOCK]; 3],
+    out: &'a mut Out,
     n: usize,
 }
 
@@ -180,9 +156,6 @@ fn cbrt(v: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-
-    const ORDERS: [Order; 4] = [Order::One, Order::Two, Order::Three, Order::Four];
 
     #[test]
     fn cube_roots_are_exact_to_single_precision() {
@@ -193,48 +166,5 @@ mod tests {
             v *= 1.0371;
         }
         assert_eq!([cbrt(0.0), cbrt(-1.0)].map(f32::to_bits), [0, 0]);
-    }
-
-    proptest! {
-        #[test]
-        fn planes_agree_with_single_colours(
-            order in 0usize..4,
-            coefficients in prop::collection::vec(-2.0f64..2.0, 66),
-            pixels in prop::collection::vec((-0.1f32..4.0, -0.1f32..4.0, -0.1f32..4.0), 1..600),
-        ) {
-            let order = ORDERS[order];
-            let triples = coefficients.chunks(3).map(|c| [c[0], c[1], c[2]]);
-            let model = Model::new(order, triples.take(order.terms().len()).collect()).unwrap();
-            let mut planes: [Vec<f32>; 3] = [
-                pixels.iter().map(|p| p.0).collect(),
-                pixels.iter().map(|p| p.1).collect(),
-                pixels.iter().map(|p| p.2).collect(),
-            ];
-            let [r, g, b] = &mut planes;
-            PlaneModel::new(&model).apply([r, g, b]);
-            for (i, p) in pixels.iter().enumerate() {
-                let slow = model.xyz([p.0, p.1, p.2].map(f64::from));
-                // Relative to the sum of the terms' sizes: they may cancel.
-                let size = 2.0 * 22.0 * f64::from(p.0.abs().max(p.1.abs()).max(p.2.abs()));
-                for (fast, slow) in [(planes[0][i], slow.x), (planes[1][i], slow.y), (planes[2][i], slow.z)] {
-                    prop_assert!((f64::from(fast) - slow).abs() <= 1e-6 * size, "{fast} {slow}");
-                }
-            }
-        }
-
-        #[test]
-        fn planes_commute_with_exposure(k in 1e-3f32..1e3, r in 0f32..1.0, g in 0f32..1.0, b in 0f32..1.0) {
-            let triples = (0..22).map(|i| [0.5, 0.2 * f64::from(i), 1.0 - 0.1 * f64::from(i)]).collect();
-            let model = PlaneModel::new(&Model::new(Order::Four, triples).unwrap());
-            let apply = |k: f32| {
-                let (mut r, mut g, mut b) = ([r * k], [g * k], [b * k]);
-                model.apply([&mut r, &mut g, &mut b]);
-                [r[0], g[0], b[0]]
-            };
-            let (one, two) = (apply(1.0), apply(k));
-            for c in 0..3 {
-                prop_assert!((one[c] * k - two[c]).abs() <= 4e-5 * k, "{one:?} * {k} is not {two:?}");
-            }
-        }
     }
 }
