@@ -9,7 +9,7 @@ use profile::Sensitivities;
 use profile::spectra::in_31_channels;
 
 /// The folder of spectra, where there is one.
-pub fn folder() -> Option<PathBuf> {
+pub(super) fn folder() -> Option<PathBuf> {
     let data = std::env::var_os("DARKROOT_DATA").map(PathBuf::from);
     // Tests run in the folder of their package; the variable is meant from the top of the repository.
     let top = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -25,17 +25,17 @@ fn file(name: &str) -> PathBuf {
 }
 
 /// A camera of the data folder.
-pub fn camera(name: &str) -> Sensitivities {
+pub(super) fn camera(name: &str) -> Sensitivities {
     spectra::read_sensitivities(&file(&format!("cam_{name}"))).unwrap().0
 }
 
 /// Reflectances of a file, all of them.
-pub fn reflectances(name: &str) -> Vec<Spectrum> {
+pub(super) fn reflectances(name: &str) -> Vec<Spectrum> {
     spectra::read(&file(name)).unwrap().reflectances()
 }
 
 /// A light in the papers' 31 channels.
-pub fn light(name: &str) -> Spectrum {
+pub(super) fn light(name: &str) -> Spectrum {
     in_31_channels(&Illuminant::by_name(name).unwrap().spectrum())
 }
 
@@ -46,21 +46,21 @@ fn listed(name: &str, list: &str) -> Vec<Spectrum> {
 }
 
 /// The 24 patches of the classic chart.
-pub fn classic_24() -> Vec<Spectrum> {
+pub(super) fn classic_24() -> Vec<Spectrum> {
     reflectances("colorchecker_classic24_babelcolor_380-730_10")
 }
 
 /// The 96 inner patches of the Digital SG.
-pub fn sg_96() -> Vec<Spectrum> {
+pub(super) fn sg_96() -> Vec<Spectrum> {
     listed("colorchecker_sg_all_380-730_1", "sg96_patch_names.txt")
 }
 
 /// The 180 inner patches of the DC.
-pub fn dc_180() -> Vec<Spectrum> {
+pub(super) fn dc_180() -> Vec<Spectrum> {
     listed("colorchecker_dc_all_380-730_1", "dc180_patch_names.txt")
 }
 
 /// The 1995 reflectances of Simon Fraser University.
-pub fn sfu_1995() -> Vec<Spectrum> {
+pub(super) fn sfu_1995() -> Vec<Spectrum> {
     reflectances("sfu1995_380-780_4")
 }

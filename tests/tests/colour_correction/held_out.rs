@@ -28,8 +28,13 @@ const CAMERAS: [&str; 16] = [
 ];
 const LIGHTS: [&str; 3] = ["D50", "FL11", "LED-B5"];
 
+/// Every camera under every light.
+pub(super) fn cases() -> Vec<(&'static str, &'static str)> {
+    CAMERAS.iter().flat_map(|camera| LIGHTS.iter().map(move |light| (*camera, *light))).collect()
+}
+
 /// The colours that are judged.
-fn unseen() -> Vec<Spectrum> {
+pub(super) fn unseen() -> Vec<Spectrum> {
     let mut all = data::dc_180();
     for name in ["refl_rawtoaces190", "refl_iset_esserchart", "refl_iset_clothes_vhrel"] {
         all.extend(data::reflectances(name));
@@ -40,9 +45,7 @@ fn unseen() -> Vec<Spectrum> {
 /// Mean over cameras and lights of the mean, 95th percentile and maximum of CIEDE2000.
 fn held_out(chart: &[Spectrum], kind: Kind) -> [f64; 3] {
     let unseen = unseen();
-    let cases: Vec<(&str, &str)> =
-        CAMERAS.iter().flat_map(|camera| LIGHTS.iter().map(move |light| (*camera, *light))).collect();
-    let one = |(camera, light): &(&str, &str)| {
+    let one = |(camera, light): (&str, &str)| {
         let light = data::light(light);
         let camera = data::camera(camera).under(&light).unwrap();
         let model = fit::fit(&camera.render(chart, &light).unwrap(), kind).unwrap().fit.model;
@@ -51,7 +54,7 @@ fn held_out(chart: &[Spectrum], kind: Kind) -> [f64; 3] {
         let s = Errors::between(&estimates, truth.xyz(), truth.white()).de2000;
         [s.mean, s.p95, s.max]
     };
-    let all: Vec<[f64; 3]> = cases.par_iter().map(one).collect();
+    let all: Vec<[f64; 3]> = cases().into_par_iter().map(one).collect();
     [0, 1, 2].map(|k| all.iter().map(|v| v[k]).sum::<f64>() / all.len() as f64)
 }
 

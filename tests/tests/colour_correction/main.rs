@@ -4,3 +4,4 @@
 mod data;
 mod held_out;
 mod published_tables;
+mod spectral_prior;

@@ -16,6 +16,15 @@ pub mod anchored;
 
 pub mod hue_plane;
 
+pub mod prior;
+
+pub mod virtual_set;
+
+pub mod chromatic;
+
+pub mod spectral;
+pub use spectral::Knowledge;
+
 pub mod choose;
 pub use choose::{Candidate, fit};
 
