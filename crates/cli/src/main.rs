@@ -1,10 +1,12 @@
 //! The program `darkroot`: arguments to settings to the library.
 //!
-//! Data goes to stdout, words to stderr. Exit codes: 0 all done, 1 some file failed, 2 wrong usage, 130
-//! interrupted.
+//! Data goes to stdout, words to stderr. Exit codes: 0 all done, 1 some file failed, 2 wrong usage, 3
+//! what was judged is not good enough, 130 interrupted.
 
 mod develop;
+mod evaluate;
 mod inspect;
+mod profile;
 mod progress;
 mod shell;
 mod values;
@@ -44,6 +46,8 @@ struct Common {
 enum Command {
     Develop(develop::Develop),
     Inspect(inspect::Inspect),
+    Profile(profile::Profile),
+    Evaluate(evaluate::Evaluate),
     Completions(shell::Completions),
     Man(shell::Man),
 }
@@ -52,6 +56,8 @@ enum Command {
 enum Outcome {
     Done,
     SomeFailed,
+    /// What was judged is not good enough.
+    Rejected,
 }
 
 /// Words for a person, on stderr. That nobody reads them any more must not stop the work.
@@ -71,17 +77,27 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Develop(command) => command.run(cli.common),
         Command::Inspect(command) => command.run(),
+        Command::Profile(command) => command.run(),
+        Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
+        Ok(Outcome::Rejected) => ExitCode::from(3),
+        // Whoever reads our output has seen enough.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             crate::say(format_args!("error: {error:#}"));
             ExitCode::from(2)
         }
     }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    let io = error.chain().find_map(|cause| cause.downcast_ref::<std::io::Error>());
+    io.is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
 }
 
 /// A decoder that panics over a damaged file is caught and becomes an error; its own report helps nobody.

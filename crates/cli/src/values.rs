@@ -47,6 +47,11 @@ pub(crate) fn space(text: &str) -> Result<OutputSpace, String> {
     })
 }
 
+/// `--model`.
+pub(crate) fn kind(text: &str) -> Result<profile::Kind, String> {
+    text.parse().map_err(|e: profile::kind::UnknownKind| e.to_string())
+}
+
 /// `--exposure`.
 pub(crate) fn stops(text: &str) -> Result<f64, String> {
     const MOST: f64 = 20.0;

@@ -47,6 +47,31 @@ pub enum Error {
         /// What is wrong with it, with what to do.
         what: String,
     },
+    /// Neither a profile file nor a camera with a profile.
+    #[error("{text}: is neither a profile file nor a camera with a profile; `darkroot profile list` shows these")]
+    NoProfile {
+        /// As it was given.
+        text: String,
+    },
+    /// A light that nobody knows.
+    #[error("`{text}` is no light; known are {names}")]
+    Light {
+        /// As it was given.
+        text: String,
+        /// What could have been given.
+        names: String,
+    },
+    /// A model cannot be fitted.
+    #[error("the profile for {light} cannot be made: {what}")]
+    Fit {
+        /// Name of the light.
+        light: String,
+        /// What is wrong, with what to do.
+        what: String,
+    },
+    /// A profile for no light at all.
+    #[error("a profile needs a light; name one with `--light`")]
+    NoLight,
     /// The profile is for another camera.
     #[error(
         "{path}: is a profile for {of}, but {input} was taken with {camera}; choose another `--profile`, or add the \

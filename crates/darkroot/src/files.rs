@@ -89,3 +89,19 @@ pub(crate) fn write<E>(
     let persisted = if overwrite { temporary.persist(path) } else { temporary.persist_noclobber(path) };
     persisted.map(drop).map_err(|e| Failed::Io(e.error))
 }
+
+/// Writes bytes as a file through [`write`]; missing folders are made.
+///
+/// # Errors
+/// A file that exists and is not to be replaced, or that cannot be written.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), Error> {
+    if !overwrite && path.symlink_metadata().is_ok() {
+        return Err(Error::Exists { path: path.to_owned() });
+    }
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(|e| Error::write(path, &e))?;
+    }
+    write(path, overwrite, |out| out.write_all(bytes)).map_err(|failed| match failed {
+        Failed::Io(e) | Failed::Other(e) => Error::write(path, &e),
+    })
+}

@@ -1,6 +1,5 @@
 //! What a raw file is, without developing it.
 
-use std::io;
 use std::path::{Path, PathBuf};
 
 use develop::{CameraMatrix, Survey};
@@ -8,7 +7,7 @@ use photo::metadata::{Directory, Metadata, tag};
 use photo::{AsShot, Calibration, Capture, Layout};
 use serde::Serialize;
 
-use crate::files::{self, Failed};
+use crate::files;
 use crate::store::ProfileStore;
 use crate::{Error, Settings};
 
@@ -180,13 +179,7 @@ pub fn save_preview(input: &Path, output: &Path, overwrite: bool) -> Result<raw:
     let bytes = files::read(input)?;
     let preview = raw::preview(&bytes).map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     let preview = preview.ok_or_else(|| Error::NoPreview { path: input.to_owned() })?;
-    if !overwrite && output.symlink_metadata().is_ok() {
-        return Err(Error::Exists { path: output.to_owned() });
-    }
-    let fill = |out: &mut io::BufWriter<&std::fs::File>| io::Write::write_all(out, &preview.jpeg);
-    files::write(output, overwrite, fill).map_err(|failed| match failed {
-        Failed::Io(e) | Failed::Other(e) => Error::write(output, &e),
-    })?;
+    files::write_whole(output, &preview.jpeg, overwrite)?;
     Ok(preview)
 }
 

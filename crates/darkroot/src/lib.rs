@@ -32,6 +32,14 @@ pub use inspect::{Inspection, inspect, save_preview};
 pub mod spectra;
 pub use spectra::SpectraFile;
 
+pub mod light;
+pub use light::NamedLight;
+
+pub mod from_spectra;
+pub use from_spectra::{FromSpectra, from_spectra};
+
+pub mod evaluate;
+
 pub mod store;
 pub use store::ProfileStore;
 

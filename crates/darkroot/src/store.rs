@@ -63,6 +63,19 @@ impl ProfileStore {
         self.found.iter().find(|f| is_for(&f.profile, camera))
     }
 
+    /// The profile that a person names: a file, or the camera of a profile in the store ("Nikon D700").
+    ///
+    /// # Errors
+    /// Neither of both, or a file that is no usable profile.
+    pub fn choose(&self, text: &str) -> Result<Found, Error> {
+        let path = Path::new(text);
+        if path.is_file() {
+            return Ok(Found { profile: read(path)?, place: text.to_owned() });
+        }
+        let named = self.found.iter().find(|f| f.profile.camera().is("", text));
+        named.cloned().ok_or_else(|| Error::NoProfile { text: text.to_owned() })
+    }
+
     /// All profiles, those of the user first.
     pub fn all(&self) -> &[Found] {
         &self.found
@@ -92,6 +105,14 @@ pub(crate) fn is_for(profile: &Profile, camera: &Camera) -> bool {
 pub fn read(path: &Path) -> Result<Profile, Error> {
     let text = std::fs::read_to_string(path).map_err(|e| Error::read(path, &e))?;
     profile::file::parse(&text).map_err(|source| Error::Profile { path: path.to_owned(), source })
+}
+
+/// Writes a profile's file, whole or not at all. Missing folders are made.
+///
+/// # Errors
+/// A file that exists and is not to be replaced, or that cannot be written.
+pub fn write(profile: &Profile, path: &Path, overwrite: bool) -> Result<(), Error> {
+    crate::files::write_whole(path, profile::file::format(profile).as_bytes(), overwrite)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {

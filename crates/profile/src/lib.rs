@@ -43,6 +43,8 @@ pub mod simd;
 
 pub mod fit;
 
+pub mod lint;
+
 pub mod spectra;
 pub use spectra::{Effective, Sensitivities};
 

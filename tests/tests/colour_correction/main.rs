@@ -5,3 +5,4 @@ mod data;
 mod held_out;
 mod published_tables;
 mod spectral_prior;
+mod twenty_four;

@@ -56,6 +56,27 @@ impl Problem {
         Some(Solution { unknowns, left_out })
     }
 
+    /// Estimates of `others`, a row for each data row, each by the fit without that data row: b M_i with
+    /// M_i = M - R^-1 q_i r_i / (1 - h_i). Blocks of one row only. `None` when the rows do not determine the
+    /// unknowns.
+    pub fn left_out_at(&self, others: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let (q, unknowns) = self.factorise()?;
+        let residuals = self.targets.rows(0, self.data) - self.rows.rows(0, self.data) * &unknowns;
+        // R^-1 q_i is what the pseudo-inverse makes of data row i: solve for unit targets.
+        let mut units = DMatrix::zeros(self.rows.nrows(), self.data);
+        units.fill_diagonal(1.0);
+        let influence = Self { targets: units, ..self.clone() }.solve()?;
+        let mut estimates = others * &unknowns;
+        for i in 0..self.data {
+            let own = 1.0 - q.row(i).norm_squared();
+            let reach = others.row(i).dot(&influence.column(i).transpose()) / own;
+            for (estimate, residual) in estimates.row_mut(i).iter_mut().zip(residuals.row(i).iter()) {
+                *estimate -= reach * residual;
+            }
+        }
+        Some(estimates)
+    }
+
     /// The orthonormal factor of the rows, whose columns are scaled to length 1 first, and the unknowns.
     fn factorise(&self) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
         let columns = self.rows.ncols();

@@ -32,6 +32,35 @@ pub fn polynomial(samples: &Samples, degree: u8) -> Result<Fit, FitError> {
     Ok(Fit { model, left_out, settings: String::new() })
 }
 
+/// What matrices, polynomials and root polynomials that were fitted at exposure 1 make of the colours at `exposure`
+/// (a factor), each colour left out of its fit: the protocol of the paper's second table.
+///
+/// # Errors
+/// Too few colours, colours that do not determine the terms, or another kind of model.
+pub fn left_out_at_exposure(samples: &Samples, kind: Kind, exposure: f64) -> Result<Vec<Xyz>, FitError> {
+    let (count, value): (usize, Box<dyn Fn([f64; 3], usize) -> f64>) = match kind {
+        Kind::Polynomial(degree) => {
+            let terms = polynomial::terms(degree);
+            (terms.len(), Box::new(|rgb, term| polynomial::value(terms[term], rgb)))
+        }
+        Kind::Linear => (3, Box::new(|rgb, term| rgb[term])),
+        Kind::Root(order) => {
+            (order.terms().len(), Box::new(move |rgb, term| order.terms()[term].value(rgb)))
+        }
+        _ => return Err(FitError::Undetermined { kind }),
+    };
+    let have = samples.len();
+    if have < count + 1 {
+        return Err(FitError::TooFew { kind, need: count + 1, have });
+    }
+    let features = |k: f64| {
+        DMatrix::from_fn(have, count, |i, term| value(samples.rgb()[i].map(|v| v * k), term))
+    };
+    let problem = Problem { rows: features(1.0), targets: targets(samples.xyz()), data: have, block: 1 };
+    let estimates = problem.left_out_at(&features(exposure)).ok_or(FitError::Undetermined { kind })?;
+    Ok(triples(&estimates).into_iter().map(|[x, y, z]| Xyz::new(x, y, z)).collect())
+}
+
 fn solve(
     samples: &Samples,
     kind: Kind,

@@ -4,7 +4,7 @@ use colour::{Spectrum, Xyz};
 use rayon::prelude::*;
 
 use super::prior::{Hyperparameters, Observed, Prior};
-use super::virtual_set::VirtualSet;
+use super::virtual_set::{Rendered, VirtualSet};
 use super::{Fit, FitError, Samples, chromatic};
 use crate::{Kind, Model};
 
@@ -55,6 +55,21 @@ pub fn fit(samples: &Samples, knowledge: Knowledge<'_>, kind: Kind) -> Result<Fi
     })
 }
 
+/// Fits a model of the spectral prior to a virtual set through a camera that is known. Left out, one in 24 at a
+/// time, are the real surfaces with their powers.
+///
+/// # Errors
+/// Colours that do not determine the model.
+pub fn fit_known_camera(set: &Rendered, kind: Kind) -> Result<Fit, FitError> {
+    let model = model_of(set, kind)?;
+    let groups = set.real.min(MOST_FITS);
+    let without = |group: usize| model_of(&set.without(|surface| surface % groups == group)?, kind);
+    let models = (0..groups).into_par_iter().map(without).collect::<Result<Vec<_>, _>>()?;
+    let rgb = &set.samples.rgb()[..set.real];
+    let left_out = rgb.iter().enumerate().map(|(i, rgb)| models[i % groups].xyz(*rgb)).collect();
+    Ok(Fit { model, left_out, settings: String::new() })
+}
+
 /// The model alone, without leaving out.
 ///
 /// # Errors
@@ -73,8 +88,12 @@ fn model(
 ) -> Result<Model, FitError> {
     let camera = knowledge.prior.posterior(observed, h).ok_or(FitError::Undetermined { kind })?;
     let set = knowledge.set.render(&camera, knowledge.light)?;
+    model_of(&set, kind)
+}
+
+fn model_of(set: &Rendered, kind: Kind) -> Result<Model, FitError> {
     match kind {
-        Kind::Chromatic => chromatic::fit(&set),
+        Kind::Chromatic => chromatic::fit(set),
         _ => Err(FitError::NoSpectra { kind }),
     }
 }

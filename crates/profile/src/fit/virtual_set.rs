@@ -66,6 +66,28 @@ impl VirtualSet {
 }
 
 impl Rendered {
+    /// The set without some of the real surfaces and their powers.
+    ///
+    /// # Errors
+    /// None in practice; the values were checked before.
+    pub fn without(&self, left_out: impl Fn(usize) -> bool) -> Result<Self, FitError> {
+        let powers = 3 * self.real;
+        let kept: Vec<usize> = (0..self.weights.len())
+            .filter(|i| *i >= powers || !left_out(i % self.real))
+            .collect();
+        let s = &self.samples;
+        Ok(Self {
+            samples: Samples::new(
+                kept.iter().map(|i| s.rgb()[*i]).collect(),
+                kept.iter().map(|i| s.xyz()[*i]).collect(),
+                s.white(),
+            )?,
+            weights: kept.iter().map(|i| self.weights[*i]).collect(),
+            metric: kept.iter().map(|i| self.metric[*i]).collect(),
+            real: kept.iter().filter(|i| **i < self.real).count(),
+        })
+    }
+
     /// The real surfaces alone.
     ///
     /// # Errors

@@ -1,0 +1,80 @@
+//! `darkroot evaluate`.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+use darkroot::evaluate::{Row, in_brief, read_set, table};
+
+use crate::Outcome;
+
+/// Print the tables of the root-polynomial papers from spectra: models, each colour left out, at several exposures
+///
+/// Each model (linear, polynomial-2 to -4, root-2 to -4) is fitted by plain least squares at exposure 1 to a set of
+/// reflectances under a light, and judged by dE*uv (mean, median, 95th percentile, max) on each colour left out, at
+/// each exposure. Beside it stand the figures of the paper (CIC 2011, tables 1 and 2) where the camera is the Sony
+/// DXC-930, the light D65 and the set called SG, DC or SFU.
+#[derive(Debug, Args)]
+pub(crate) struct Evaluate {
+    /// CSV of a camera's sensitivities; several may be given
+    #[arg(long = "sensitivities", value_name = "FILE", required = true, num_args = 1..)]
+    cameras: Vec<PathBuf>,
+
+    /// Reflectances: NAME=FILE.csv, or NAME=FILE.csv:LIST.txt to take only the spectra that a text file lists
+    #[arg(long = "set", value_name = "NAME=FILE", required = true, num_args = 1..)]
+    sets: Vec<String>,
+
+    /// Light: D65, A, LED-B3, 5500K, lamp.csv, lamps.csv:NAME; several may be given
+    #[arg(long = "light", value_name = "LIGHT", default_value = "D65", num_args = 1..)]
+    lights: Vec<String>,
+
+    /// Exposures to judge at, relative to that of the fit
+    #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1,0.5,1.5", value_parser = factor)]
+    exposures: Vec<f64>,
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let factor: Option<f64> = text.trim().parse().ok().filter(|f| (1e-3..=1e3).contains(f));
+    factor.ok_or_else(|| format!("`{text}` is no factor of light between 0.001 and 1000"))
+}
+
+impl Evaluate {
+    pub(crate) fn run(self) -> Result<Outcome> {
+        let sets = self.sets.iter().map(|s| read_set(s)).collect::<Result<Vec<_>, _>>()?;
+        let lights = self.lights.iter().map(|l| darkroot::light::find(l)).collect::<Result<Vec<_>, _>>()?;
+        let mut out = std::io::stdout().lock();
+        for camera in &self.cameras {
+            let name = camera.file_stem().unwrap_or_default().to_string_lossy();
+            for light in &lights {
+                for set in &sets {
+                    for exposure in &self.exposures {
+                        let rows = table(camera, light, set, *exposure)?;
+                        let (light, count) = (&light.light.name, set.reflectances.len());
+                        writeln!(out, "{name}, {light}, {} ({count} colours), exposure x{exposure}", set.name)?;
+                        write_rows(&mut out, &rows)?;
+                    }
+                }
+            }
+        }
+        Ok(Outcome::Done)
+    }
+}
+
+fn write_rows(out: &mut impl std::io::Write, rows: &[Row]) -> Result<()> {
+    let with_paper = rows.iter().any(|row| row.paper.is_some());
+    let paper = if with_paper { "   paper: mean median   95 %" } else { "" };
+    writeln!(out, "  {:13}  mean median   95 %    max{paper}", "dE*uv")?;
+    for row in rows {
+        let own = row.errors.map_or_else(
+            || "too few colours".to_owned(),
+            |e| format!("{} {:6.1}", in_brief(&e.de_uv), e.de_uv.max),
+        );
+        let paper = row.paper.map_or_else(String::new, |[mean, median, p95]| {
+            format!("           {mean:4.1}    {median:3.1}   {p95:4.1}")
+        });
+        writeln!(out, "  {:13} {own}{paper}", row.kind.to_string())?;
+    }
+    writeln!(out)?;
+    Ok(())
+}
