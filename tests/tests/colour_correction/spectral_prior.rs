@@ -146,3 +146,18 @@ fn the_chromatic_model_stands_noisy_patches() {
         assert_held_out(Kind::Chromatic, &data::classic_24(), 0.03, 0.77, 3.5);
     }
 }
+
+#[test]
+fn the_spectral_model_is_as_good_as_it_should_be() {
+    if data::folder().is_some() {
+        assert_held_out(Kind::Spectral, &data::classic_24(), 0.0, 0.60, 3.0);
+        assert_held_out(Kind::Spectral, &data::sg_96(), 0.0, 0.60, 3.0);
+    }
+}
+
+#[test]
+fn the_spectral_model_stands_noisy_patches() {
+    if data::folder().is_some() {
+        assert_held_out(Kind::Spectral, &data::classic_24(), 0.03, 0.77, 3.5);
+    }
+}

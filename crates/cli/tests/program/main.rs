@@ -9,6 +9,7 @@ mod help;
 mod inspect;
 mod metadata;
 mod outputs;
+mod profile_commands;
 mod profiles;
 mod stopped;
 mod usage;

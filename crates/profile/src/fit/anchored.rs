@@ -154,6 +154,19 @@ pub(super) fn features(order: Order, rgb: [f64; 3]) -> Vec<f64> {
     [r - g, b - g].into_iter().chain(bent).collect()
 }
 
+/// Derivatives by r, g and b of psi of every term above order 1, for a colour whose channels are all positive:
+/// e_c - e_c r^e1 g^e2 b^e3 / c.
+pub(super) fn psi_slopes(order: Order, rgb: [f64; 3]) -> Vec<[f64; 3]> {
+    let slopes = |term: &Term| {
+        let value = term.value(rgb);
+        [0, 1, 2].map(|c| {
+            let e = f64::from(term.powers[c]) / f64::from(term.root);
+            e - e * value / rgb[c]
+        })
+    };
+    order.terms()[3..].iter().map(slopes).collect()
+}
+
 /// The root polynomial in the paper's terms that has these coefficients of [`features`] and maps (1,1,1) to white.
 pub(super) fn root_polynomial(order: Order, white: Xyz, coefficients: &[[f64; 3]]) -> Option<RootPolynomial> {
     let mut terms = vec![[0.0; 3]; order.terms().len()];
@@ -187,6 +200,22 @@ mod tests {
                 let mut moved = [0.4; 3];
                 moved[c] += 1e-6;
                 assert!(psi(*term, moved).abs() < 1e-11, "{}", term.name());
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_of_psi_are_its_differences() {
+        let rgb = [0.3, 0.7, 0.2];
+        for (term, slopes) in Order::Four.terms()[3..].iter().zip(psi_slopes(Order::Four, rgb)) {
+            for c in 0..3 {
+                let at = |h: f64| {
+                    let mut moved = rgb;
+                    moved[c] += h;
+                    psi(*term, moved)
+                };
+                let difference = (at(1e-6) - at(-1e-6)) / 2e-6;
+                assert!((difference - slopes[c]).abs() < 1e-8, "{}", term.name());
             }
         }
     }

@@ -20,6 +20,10 @@ pub mod prior;
 
 pub mod virtual_set;
 
+mod density;
+
+pub mod root_set;
+
 pub mod chromatic;
 
 pub mod spectral;

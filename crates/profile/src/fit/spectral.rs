@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::prior::{Hyperparameters, Observed, Prior};
 use super::virtual_set::{Rendered, VirtualSet};
-use super::{Fit, FitError, Samples, chromatic};
+use super::{Fit, FitError, Samples, chromatic, root_set};
 use crate::{Kind, Model};
 
 /// Most fits that leaving out takes; with more colours, groups are left out together.
@@ -94,6 +94,7 @@ fn model(
 fn model_of(set: &Rendered, kind: Kind) -> Result<Model, FitError> {
     match kind {
         Kind::Chromatic => chromatic::fit(set),
+        Kind::Spectral => root_set::fit(set),
         _ => Err(FitError::NoSpectra { kind }),
     }
 }

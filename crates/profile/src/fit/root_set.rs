@@ -1,0 +1,312 @@
+//! A root polynomial of order 4 on a virtual set, in CIEDE2000, that does not fold over.
+//!
+//! In the neutral-anchored basis (see [`super::anchored`]) the fit is linear least squares. Penalties hold the psi
+//! part back: a small ridge, a pull to zero at saturated colours, and its slope at every colour of the set, which
+//! amplifies noise. A model folds where the determinant of its Jacobian changes sign. The determinant, relative to
+//! that of the model's matrix near grey, is kept above a margin over a grid of chromaticities (they stand for all
+//! colours, since the model is homogeneous) by a growing penalty on what it lacks, with Gauss and Newton's method.
+
+use colour::{Matrix3, Vector3, Xyz};
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+use super::anchored::{features, psi_slopes, root_polynomial, saturated_points};
+use super::least_squares::Problem;
+use super::virtual_set::Rendered;
+use super::{FitError, density};
+use crate::{Kind, Model, Order};
+
+const ORDER: Order = Order::Four;
+/// Ridge on the psi coefficients, as a share of the squared length of their columns.
+const RIDGE: f64 = 3e-6;
+/// Weight of the pull of psi to zero at saturated colours, as a share of the data's.
+const ANCHORS: f64 = 1e-4;
+/// Weight of the slope of psi.
+const SLOPE: f64 = 0.02;
+/// Share of plain XYZ in the metric, the rest being CIEDE2000.
+const PLAIN: f64 = 0.05;
+/// Least determinant, relative to the matrix's.
+const MARGIN: f64 = 0.2;
+/// A determinant of this share of the margin is enough.
+const ENOUGH: f64 = 0.5;
+/// Growth of the penalty's weight from round to round, and how many rounds and steps there are at most.
+const GROWTH: f64 = 4.0;
+const ROUNDS: usize = 12;
+const STEPS: usize = 4;
+
+/// Fits the model to a rendered virtual set.
+///
+/// # Errors
+/// Colours that do not determine it.
+pub fn fit(set: &Rendered) -> Result<Model, FitError> {
+    let undetermined = FitError::Undetermined { kind: Kind::Spectral };
+    let goal = Goal::new(set).ok_or(undetermined.clone())?;
+    let start = goal.solve(&[]).ok_or(undetermined.clone())?;
+    let unfolded = Folds::new(set.samples.white(), &start).remove(&goal, start);
+    let rows: Vec<[f64; 3]> = (0..unfolded.len() / 3)
+        .map(|i| [unfolded[3 * i], unfolded[3 * i + 1], unfolded[3 * i + 2]])
+        .collect();
+    root_polynomial(ORDER, set.samples.white(), &rows).map(Model::from).ok_or(undetermined)
+}
+
+/// The least squares problem without folds in it, reduced to a triangle. Unknowns are X, Y and Z of the first
+/// feature, then of the second, and so on.
+struct Goal {
+    rows: DMatrix<f64>,
+    targets: DVector<f64>,
+    /// Sum of the colours' weights.
+    weight: f64,
+}
+
+/// A further row of the problem.
+struct Row {
+    row: RowDVector<f64>,
+    target: f64,
+}
+
+impl Goal {
+    fn new(set: &Rendered) -> Option<Self> {
+        let samples = &set.samples;
+        let weights = density::evened(samples.rgb(), &set.weights, set.real);
+        let metric: Vec<Matrix3> =
+            set.metric.iter().zip(&weights).map(|(m, w)| Some(mixed(m)? * w.sqrt())).collect::<Option<_>>()?;
+        let width = features(ORDER, [0.0; 3]).len();
+        let (count, columns) = (samples.len(), 3 * width);
+
+        let mut data = DMatrix::zeros(3 * count, columns);
+        let mut targets = DVector::zeros(3 * count);
+        let white = Vector3::from(samples.white());
+        for (i, (rgb, xyz)) in samples.rgb().iter().zip(samples.xyz()).enumerate() {
+            for (f, value) in features(ORDER, *rgb).into_iter().enumerate() {
+                data.view_mut((3 * i, 3 * f), (3, 3)).copy_from(&(metric[i] * value));
+            }
+            let rest = Vector3::from(*xyz) - white * rgb[1];
+            targets.rows_mut(3 * i, 3).copy_from(&(metric[i] * rest));
+        }
+        let ridge = DVector::from_fn(columns, |c, _| {
+            if c < 6 { 0.0 } else { RIDGE.sqrt() * data.column(c).norm() }
+        });
+        let total = metric.iter().fold(Matrix3::zeros(), |sum, m| sum + m.transpose() * m);
+        let root = total.cholesky()?.l().transpose();
+        let points = saturated_points();
+        let pull = DMatrix::from_fn(points.len(), width, |i, f| {
+            let bent = if f < 2 { 0.0 } else { features(ORDER, points[i])[f] };
+            bent * (ANCHORS / points.len() as f64).sqrt()
+        });
+        let slopes = slopes(samples.rgb(), &metric, width)?;
+        let even = root * (3.0 / total.trace()).sqrt();
+        let penalties = [
+            DMatrix::from_diagonal(&ridge),
+            pull.kronecker(&to_dynamic(&root)),
+            slopes.kronecker(&to_dynamic(&even)),
+        ];
+        let rows: usize = penalties.iter().map(DMatrix::nrows).sum();
+        let mut all = data.resize_vertically(3 * count + rows, 0.0);
+        let mut first = 3 * count;
+        for penalty in &penalties {
+            all.rows_mut(first, penalty.nrows()).copy_from(penalty);
+            first += penalty.nrows();
+        }
+        let qr = all.qr();
+        let mut rotated = targets.resize_vertically(first, 0.0);
+        qr.q_tr_mul(&mut rotated);
+        Some(Self {
+            rows: qr.r(),
+            targets: rotated.rows(0, columns).into_owned(),
+            weight: weights.iter().sum(),
+        })
+    }
+
+    /// The unknowns with the least sum of squares, further rows included.
+    fn solve(&self, further: &[Row]) -> Option<DVector<f64>> {
+        let own = self.rows.nrows();
+        let mut rows = self.rows.clone().resize_vertically(own + further.len(), 0.0);
+        let mut targets = self.targets.clone().resize_vertically(own + further.len(), 0.0);
+        for (i, Row { row, target }) in further.iter().enumerate() {
+            rows.row_mut(own + i).copy_from(row);
+            targets[own + i] = *target;
+        }
+        let targets = DMatrix::from_column_slice(targets.len(), 1, targets.as_slice());
+        let unknowns = Problem { rows, targets, data: 0, block: 1 }.solve()?;
+        Some(unknowns.column(0).into_owned())
+    }
+
+    /// Sum of squares for given unknowns, up to a constant.
+    fn cost(&self, unknowns: &DVector<f64>) -> f64 {
+        (&self.rows * unknowns - &self.targets).norm_squared()
+    }
+}
+
+/// The metric of CIEDE2000 with a share of plain XYZ of the same size, as a matrix W again.
+fn mixed(w: &Matrix3) -> Option<Matrix3> {
+    let metric = w.transpose() * w;
+    let mixed = metric * (1.0 - PLAIN) + Matrix3::identity() * (PLAIN * metric.trace() / 3.0);
+    Some(mixed.cholesky()?.l().transpose())
+}
+
+/// A triangle that stands for the slopes of psi at all colours, times the brightness of each.
+fn slopes(rgb: &[[f64; 3]], metric: &[Matrix3], width: usize) -> Option<DMatrix<f64>> {
+    let mut all = DMatrix::zeros(3 * rgb.len(), width - 2);
+    for (i, (rgb, w)) in rgb.iter().zip(metric).enumerate() {
+        let size = SLOPE * rgb[0].max(rgb[1]).max(rgb[2]) * (w.norm_squared() / 3.0).sqrt();
+        for (f, slope) in psi_slopes(ORDER, *rgb).into_iter().enumerate() {
+            for c in 0..3 {
+                all[(3 * i + c, f)] = size * slope[c];
+            }
+        }
+    }
+    let triangle = all.qr().r();
+    let mut padded = DMatrix::zeros(triangle.nrows(), width);
+    padded.columns_mut(2, width - 2).copy_from(&triangle);
+    Some(padded)
+}
+
+fn to_dynamic(m: &Matrix3) -> DMatrix<f64> {
+    DMatrix::from_column_slice(3, 3, m.as_slice())
+}
+
+/// Where the model must not fold.
+struct Folds {
+    white: Vector3,
+    /// For each grid point and channel, the derivative of every feature.
+    slopes: Vec<Vec<[f64; 3]>>,
+    /// Determinant of the matrix near grey.
+    norm: f64,
+}
+
+impl Folds {
+    fn new(white: Xyz, start: &DVector<f64>) -> Self {
+        let slopes = grid()
+            .into_iter()
+            .map(|rgb| {
+                let linear = [[1.0, -1.0, 0.0], [0.0, -1.0, 1.0]];
+                linear.into_iter().chain(psi_slopes(ORDER, rgb)).collect()
+            })
+            .collect();
+        let mut folds = Self { white: white.into(), slopes, norm: 1.0 };
+        // At grey the slopes of psi vanish, so the first two features alone give the matrix.
+        folds.norm = folds.jacobian(&folds.slopes[0][..2].to_vec(), start).determinant();
+        folds
+    }
+
+    /// Derivatives of XYZ by the channels where the features have these derivatives.
+    fn jacobian(&self, slopes: &[[f64; 3]], unknowns: &DVector<f64>) -> Matrix3 {
+        let mut jacobian = Matrix3::zeros();
+        jacobian.set_column(1, &self.white);
+        for (f, slope) in slopes.iter().enumerate() {
+            let xyz = unknowns.fixed_rows::<3>(3 * f);
+            for (c, s) in slope.iter().enumerate() {
+                let mut column = jacobian.column_mut(c);
+                column += xyz * *s;
+            }
+        }
+        jacobian
+    }
+
+    /// Relative determinants over the grid.
+    fn determinants(&self, unknowns: &DVector<f64>) -> Vec<f64> {
+        self.slopes.iter().map(|s| self.jacobian(s, unknowns).determinant() / self.norm).collect()
+    }
+
+    /// Moves from `start` to unknowns whose determinants are all large enough.
+    fn remove(&self, goal: &Goal, start: DVector<f64>) -> DVector<f64> {
+        let mut unknowns = start;
+        let mut determinants = self.determinants(&unknowns);
+        let mut weight = goal.weight / self.slopes.len() as f64;
+        for _ in 0..ROUNDS {
+            if least(&determinants) >= ENOUGH * MARGIN {
+                return unknowns;
+            }
+            for _ in 0..STEPS {
+                let Some((next, at)) = self.step(goal, weight, &unknowns, &determinants) else { break };
+                (unknowns, determinants) = (next, at);
+            }
+            weight *= GROWTH;
+        }
+        self.shrunk(unknowns)
+    }
+
+    /// One step of Gauss and Newton's method, shortened until the cost falls. `None` when it does not.
+    fn step(
+        &self,
+        goal: &Goal,
+        weight: f64,
+        unknowns: &DVector<f64>,
+        determinants: &[f64],
+    ) -> Option<(DVector<f64>, Vec<f64>)> {
+        let cost = |x: &DVector<f64>, d: &[f64]| {
+            goal.cost(x) + weight * d.iter().map(|d| (MARGIN - d).max(0.0).powi(2)).sum::<f64>()
+        };
+        let lacking = determinants.iter().zip(&self.slopes).filter(|(d, _)| **d < MARGIN);
+        let rows: Vec<Row> = lacking
+            .map(|(d, slopes)| {
+                let row = self.determinant_slope(slopes, unknowns) * weight.sqrt();
+                let target = (MARGIN - d) * weight.sqrt() + row.tr_dot(unknowns);
+                Row { row, target }
+            })
+            .collect();
+        let wanted = goal.solve(&rows)?;
+        let before = cost(unknowns, determinants);
+        (0..10).find_map(|halvings| {
+            let next = unknowns + (&wanted - unknowns) * 0.5f64.powi(halvings);
+            let at = self.determinants(&next);
+            (cost(&next, &at) < before * (1.0 - 1e-6)).then_some((next, at))
+        })
+    }
+
+    /// Derivative of the relative determinant by the unknowns: the cofactors of the Jacobian times the slopes.
+    fn determinant_slope(&self, slopes: &[[f64; 3]], unknowns: &DVector<f64>) -> RowDVector<f64> {
+        let j = self.jacobian(slopes, unknowns);
+        let cofactor = |c: usize| j.column((c + 1) % 3).cross(&j.column((c + 2) % 3)) / self.norm;
+        let cofactors = [cofactor(0), cofactor(1), cofactor(2)];
+        RowDVector::from_fn(unknowns.len(), |_, u| {
+            let (feature, k) = (u / 3, u % 3);
+            (0..3).map(|c| cofactors[c][k] * slopes[feature][c]).sum()
+        })
+    }
+
+    /// The largest share of the psi part that does not fold; the matrix alone never does.
+    fn shrunk(&self, unknowns: DVector<f64>) -> DVector<f64> {
+        let scaled = |share: f64| {
+            let mut x = unknowns.clone();
+            x.rows_mut(6, unknowns.len() - 6).scale_mut(share);
+            x
+        };
+        let stands = |share: f64| least(&self.determinants(&scaled(share))) >= 0.5 * ENOUGH * MARGIN;
+        if stands(1.0) {
+            return unknowns;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if stands(middle) { low = middle } else { high = middle }
+        }
+        scaled(low)
+    }
+}
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// Chromaticities with the largest channel 1: 12 levels from 0.02 in equal ratios, and six levels of a plain cube.
+fn grid() -> Vec<[f64; 3]> {
+    let ratios: Vec<f64> = (0..12).map(|i| 0.02f64.powf(1.0 - f64::from(i) / 11.0)).collect();
+    let cube = [0.02, 0.1, 0.25, 0.5, 0.75, 1.0];
+    let faces = |levels: &[f64]| -> Vec<[f64; 3]> {
+        let mut all = Vec::new();
+        for &a in levels {
+            for &b in levels {
+                all.extend([[1.0, a, b], [a, 1.0, b], [a, b, 1.0]]);
+            }
+        }
+        all
+    };
+    let mut all = faces(&ratios);
+    all.extend(faces(&cube));
+    // Ratios within the cube that are not its levels.
+    for &top in &cube[1..5] {
+        let levels: Vec<f64> = cube.iter().map(|v| v / top).filter(|v| *v <= 1.0).collect();
+        all.extend(faces(&levels));
+    }
+    all
+}
