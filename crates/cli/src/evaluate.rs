@@ -51,7 +51,11 @@ impl Evaluate {
                     for exposure in &self.exposures {
                         let rows = table(camera, light, set, *exposure)?;
                         let (light, count) = (&light.light.name, set.reflectances.len());
-                        writeln!(out, "{name}, {light}, {} ({count} colours), exposure x{exposure}", set.name)?;
+                        writeln!(
+                            out,
+                            "{name}, {light}, {} ({count} colours), exposure x{exposure}",
+                            set.name
+                        )?;
                         write_rows(&mut out, &rows)?;
                     }
                 }

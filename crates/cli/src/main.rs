@@ -77,7 +77,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Develop(command) => command.run(cli.common),
         Command::Inspect(command) => command.run(),
-        Command::Profile(command) => command.run(),
+        Command::Profile(command) => command.run(cli.common),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),

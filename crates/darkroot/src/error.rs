@@ -48,7 +48,9 @@ pub enum Error {
         what: String,
     },
     /// Neither a profile file nor a camera with a profile.
-    #[error("{text}: is neither a profile file nor a camera with a profile; `darkroot profile list` shows these")]
+    #[error(
+        "{text}: is neither a profile file nor a camera with a profile; `darkroot profile list` shows these"
+    )]
     NoProfile {
         /// As it was given.
         text: String,

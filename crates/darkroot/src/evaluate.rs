@@ -57,7 +57,8 @@ pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
     let mut all = spectra::read(&file)?;
     if let Some(list) = list {
         let names = std::fs::read_to_string(&list).map_err(|e| Error::read(&list, &e))?;
-        let names: Vec<String> = names.lines().map(|l| l.trim().to_owned()).filter(|l| !l.is_empty()).collect();
+        let names: Vec<String> =
+            names.lines().map(|l| l.trim().to_owned()).filter(|l| !l.is_empty()).collect();
         all = all.only(&names).map_err(|missing| Error::Spectra {
             path: file,
             what: format!("has no spectrum `{missing}`, which {} asks for", list.display()),

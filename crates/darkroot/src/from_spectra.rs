@@ -48,10 +48,8 @@ pub fn from_spectra(request: &FromSpectra) -> Result<Profile, Error> {
         .iter()
         .map(|light| calibrate(&camera, light, &training, &held_out, request.kind))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut summary = format!(
-        "fitted to {} reflectances through the camera's spectral sensitivities",
-        training.len()
-    );
+    let mut summary =
+        format!("fitted to {} reflectances through the camera's spectral sensitivities", training.len());
     if !judges.names.is_empty() {
         summary += &format!("; held-out figures are those of {} ({})", held_out.len(), judges.names);
     }
@@ -140,7 +138,7 @@ pub(crate) fn calibration(
 ) -> Calibration {
     let to_d50 = bradford(samples.white(), white::D50);
     let adapted = |c: Xyz| Xyz::from(to_d50 * colour::Vector3::from(c));
-    let model = model.then(&to_d50);
+    let model = model.then(&to_d50).rounded();
     let patch = |(name, (rgb, xyz)): (&&str, (&[f64; 3], &Xyz))| {
         let (xyz, found) = (adapted(*xyz), model.xyz(*rgb));
         let de2000 = colour::difference::de2000(found.lab(white::D50), xyz.lab(white::D50));
@@ -148,5 +146,5 @@ pub(crate) fn calibration(
     };
     let pairs = names.iter().zip(samples.rgb().iter().zip(samples.xyz()));
     let patches = if samples.len() <= MOST_PATCHES { pairs.map(patch).collect() } else { Vec::new() };
-    Calibration { light: light.light.clone(), kind, model, figures, patches }
+    Calibration { light: light.light.clone(), kind, model, figures: figures.rounded(), patches }
 }

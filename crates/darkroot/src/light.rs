@@ -89,9 +89,10 @@ fn of_file(text: &str) -> Result<NamedLight, Error> {
     let wrong = |what: String| Error::Spectra { path: path.to_owned(), what };
     let (name, spectrum) = match (name, lights.as_slice()) {
         (None, [only]) => only,
-        (Some(name), all) => all.iter().find(|(n, _)| n == name).ok_or_else(|| {
-            wrong(format!("has no light `{name}`; it has {}", list(all)))
-        })?,
+        (Some(name), all) => all
+            .iter()
+            .find(|(n, _)| n == name)
+            .ok_or_else(|| wrong(format!("has no light `{name}`; it has {}", list(all))))?,
         (None, all) => {
             let first = all.first().map_or("NAME", |(n, _)| n.as_str());
             return Err(wrong(format!(

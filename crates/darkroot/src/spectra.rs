@@ -39,9 +39,8 @@ impl SpectraFile {
     /// # Errors
     /// A name that the file does not have; it is given back.
     pub fn only(&self, names: &[String]) -> Result<Self, String> {
-        let find = |name: &String| {
-            self.spectra.iter().find(|(n, _)| n == name).cloned().ok_or_else(|| name.clone())
-        };
+        let find =
+            |name: &String| self.spectra.iter().find(|(n, _)| n == name).cloned().ok_or_else(|| name.clone());
         let spectra = names.iter().map(find).collect::<Result<_, _>>()?;
         Ok(Self { spectra, sha256: self.sha256.clone() })
     }
@@ -108,7 +107,9 @@ fn parse(text: &str) -> Result<Vec<(String, Measured)>, String> {
         let name = row[0].clone();
         let values = row[1..]
             .iter()
-            .map(|cell| number(cell).ok_or_else(|| format!("`{name}` has `{cell}` where a number should stand")))
+            .map(|cell| {
+                number(cell).ok_or_else(|| format!("`{name}` has `{cell}` where a number should stand"))
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let measured = Measured::new(&wavelengths, &values).map_err(|e| format!("`{name}`: {e}"))?;
         Ok::<_, String>((name, measured))

@@ -1,7 +1,7 @@
 //! A camera's profile: one model per light, and which one serves which white.
 
-use colour::{Xy, Xyz};
 use colour::temperature::Temperature;
+use colour::{Xy, Xyz};
 
 use crate::{Figures, Kind, Model};
 

@@ -70,6 +70,26 @@ pub struct Figures {
     pub held_out: Option<Errors>,
 }
 
+impl Figures {
+    /// The same figures with four decimals, more than anybody can see.
+    #[must_use]
+    pub fn rounded(&self) -> Self {
+        let round = |v: f64| (v * 1e4).round() / 1e4;
+        let summary = |s: Summary| Summary {
+            mean: round(s.mean),
+            median: round(s.median),
+            p95: round(s.p95),
+            max: round(s.max),
+        };
+        let errors = |e: Errors| Errors { de2000: summary(e.de2000), de_uv: summary(e.de_uv) };
+        Self {
+            training: self.training.map(errors),
+            leave_one_out: self.leave_one_out.map(errors),
+            held_out: self.held_out.map(errors),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

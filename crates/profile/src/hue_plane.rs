@@ -87,6 +87,10 @@ impl Part for HuePlane {
         };
         Self { knots: (0..count).map(at).collect() }
     }
+
+    fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        Self { knots: self.knots.iter().map(|m| m.map(&change)).collect() }
+    }
 }
 
 #[cfg(test)]

@@ -88,8 +88,10 @@ impl fmt::Display for Kind {
 
 /// A name that is none of a model's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no model; there are linear, polynomial-2, polynomial-3, polynomial-4, root-2, root-3, root-4, \
-         anchored, hue-plane, half, spectral and chromatic")]
+#[error(
+    "`{0}` is no model; there are linear, polynomial-2, polynomial-3, polynomial-4, root-2, root-3, root-4, \
+         anchored, hue-plane, half, spectral and chromatic"
+)]
 pub struct UnknownKind(String);
 
 impl FromStr for Kind {

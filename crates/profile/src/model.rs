@@ -32,6 +32,10 @@ pub trait Part: Sized {
     /// The part that gives the sum of both.
     #[must_use]
     fn plus(&self, other: &Self) -> Self;
+
+    /// The part with every coefficient replaced.
+    #[must_use]
+    fn map(&self, change: impl Fn(f64) -> f64) -> Self;
 }
 
 impl Model {
@@ -88,6 +92,21 @@ impl Model {
             hue_plane: mixed(self.hue_plane.as_ref(), other.hue_plane.as_ref(), weight),
             residual: mixed(self.residual.as_ref(), other.residual.as_ref(), weight),
             polynomial: mixed(self.polynomial.as_ref(), other.polynomial.as_ref(), weight),
+        }
+    }
+
+    /// The same model with coefficients of ten decimals: shorter files, which do not depend on the last bits of a
+    /// machine's arithmetic.
+    #[must_use]
+    pub fn rounded(&self) -> Self {
+        const DECIMALS: f64 = 1e10;
+        // Adding 0 makes a negative zero positive.
+        let round = |v: f64| (v * DECIMALS).round() / DECIMALS + 0.0;
+        Self {
+            root: self.root.as_ref().map(|part| part.map(round)),
+            hue_plane: self.hue_plane.as_ref().map(|part| part.map(round)),
+            residual: self.residual.as_ref().map(|part| part.map(round)),
+            polynomial: self.polynomial.as_ref().map(|part| part.map(round)),
         }
     }
 

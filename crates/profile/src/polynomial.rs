@@ -120,6 +120,10 @@ impl Part for Polynomial {
         let sum = |i: usize| [0, 1, 2].map(|k| of(self, i)[k] + of(other, i)[k]);
         Self { degree, coefficients: (0..terms(degree).len()).map(sum).collect() }
     }
+
+    fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        Self { degree: self.degree, coefficients: self.coefficients.iter().map(|c| c.map(&change)).collect() }
+    }
 }
 
 #[cfg(test)]

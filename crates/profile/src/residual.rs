@@ -81,6 +81,11 @@ impl Part for Residual {
     fn plus(&self, other: &Self) -> Self {
         Self { centres: self.centres.iter().chain(&other.centres).copied().collect() }
     }
+
+    fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        let changed = |c: &Centre| Centre { rgb: c.rgb.map(&change), weight: c.weight.map(&change) };
+        Self { centres: self.centres.iter().map(changed).collect() }
+    }
 }
 
 #[cfg(test)]

@@ -59,6 +59,10 @@ impl Part for RootPolynomial {
         let sum = |i: usize| [0, 1, 2].map(|k| of(self, i)[k] + of(other, i)[k]);
         Self { order, coefficients: (0..order.terms().len()).map(sum).collect() }
     }
+
+    fn map(&self, change: impl Fn(f64) -> f64) -> Self {
+        Self { order: self.order, coefficients: self.coefficients.iter().map(|c| c.map(&change)).collect() }
+    }
 }
 
 #[cfg(test)]

@@ -14,8 +14,7 @@ pub(crate) fn all_parts() -> Vec<Model> {
     };
     let root: Model =
         RootPolynomial::new(Order::Four, (0..22).map(triple).collect()).map(Model::from).unwrap_or_default();
-    let hue: Model =
-        HuePlane::new((0..12).map(matrix).collect()).map(Model::from).unwrap_or_default();
+    let hue: Model = HuePlane::new((0..12).map(matrix).collect()).map(Model::from).unwrap_or_default();
     let centre = |rgb: [f64; 3], i: usize| Centre { rgb, weight: triple(i).map(|v| v / 3.0) };
     let centres = vec![centre([0.8, 0.1, 0.1], 1), centre([0.0, 0.3, 0.7], 4), centre([0.4, 0.6, 0.0], 9)];
     let residual = Model { residual: Residual::new(centres), ..Model::default() };

@@ -4,5 +4,6 @@
 mod data;
 mod held_out;
 mod published_tables;
+mod shipped;
 mod spectral_prior;
 mod twenty_four;

@@ -102,9 +102,8 @@ fn estimates_at_another_exposure_are_those_of_really_leaving_out() {
     for kind in [Kind::Linear, Kind::Polynomial(2), Kind::Root(Order::Three)] {
         let fast = fit::plain::left_out_at_exposure(&samples, kind, 1.5).unwrap();
         for (i, fast) in fast.into_iter().enumerate() {
-            let slow = fit::fit(&samples.without(i), kind).unwrap().fit.model.xyz(
-                samples.rgb()[i].map(|v| v * 1.5),
-            );
+            let slow =
+                fit::fit(&samples.without(i), kind).unwrap().fit.model.xyz(samples.rgb()[i].map(|v| v * 1.5));
             assert!((fast.x - slow.x).abs() + (fast.y - slow.y).abs() + (fast.z - slow.z).abs() < 1e-8);
         }
     }
@@ -152,8 +151,12 @@ fn table_2_is_reproduced() {
         SFU[6],
     ];
     let (dc, sfu) = (render(&data::dc_180()), render(&data::sfu_1995()));
-    let cases =
-        [("DC", &dc, 0.5, HALF), ("DC", &dc, 1.5, MORE), ("SFU", &sfu, 0.5, SFU_HALF), ("SFU", &sfu, 1.5, SFU_MORE)];
+    let cases = [
+        ("DC", &dc, 0.5, HALF),
+        ("DC", &dc, 1.5, MORE),
+        ("SFU", &sfu, 0.5, SFU_HALF),
+        ("SFU", &sfu, 1.5, SFU_MORE),
+    ];
     for (name, samples, k, rows) in cases {
         for (kind, mut row) in models().into_iter().zip(rows) {
             let errors = at_exposure(samples, kind, k);
@@ -172,9 +175,8 @@ fn root_polynomials_hold_at_every_exposure_and_polynomials_do_not() {
         return;
     }
     let samples = render(&data::sfu_1995());
-    let largest = |colours: &[Xyz]| {
-        colours.iter().flat_map(|c| [c.x.abs(), c.y.abs(), c.z.abs()]).fold(0.0, f64::max)
-    };
+    let largest =
+        |colours: &[Xyz]| colours.iter().flat_map(|c| [c.x.abs(), c.y.abs(), c.z.abs()]).fold(0.0, f64::max);
     for (kind, bound) in models().into_iter().zip([1e-15, 0.0, 0.0, 0.0, 2e-15, 5e-14, 1e-11]) {
         let model = fit::fit(&samples, kind).unwrap().fit.model;
         let base: Vec<Xyz> = samples.rgb().iter().map(|rgb| model.xyz(*rgb)).collect();

@@ -2,7 +2,8 @@
 //! numpy's least squares with each patch really left out.
 
 use colour::illuminant::Illuminant;
-use profile::fit::{self, Samples};
+use profile::fit::virtual_set::VirtualSet;
+use profile::fit::{self, Samples, spectral};
 use profile::spectra::in_31_channels;
 use profile::{Kind, Order, Sensitivities};
 use simulate::{Camera, chart};
@@ -49,9 +50,8 @@ fn channel_gains_only_rescale_the_coefficients() {
             root.terms().collect::<Vec<_>>()
         };
         for ((term, one), (_, other)) in coefficients(&samples).into_iter().zip(coefficients(&scaled)) {
-            let gain: f64 = (0..3)
-                .map(|c| gains[c].powf(f64::from(term.powers[c]) / f64::from(term.root)))
-                .product();
+            let gain: f64 =
+                (0..3).map(|c| gains[c].powf(f64::from(term.powers[c]) / f64::from(term.root))).product();
             for (a, b) in one.into_iter().zip(other) {
                 assert!((a - b * gain).abs() < 1e-8 * (1.0 + a.abs()), "{}", term.name());
             }
@@ -70,6 +70,34 @@ fn greys_stay_grey_in_models_that_promise_it() {
             let off = (found.x - grey * white.x).abs().max((found.z - grey * white.z).abs());
             assert!(off.max((found.y - grey).abs()) < 1e-12 * grey.max(1e-3), "{kind} {grey}: {found:?}");
         }
+    }
+}
+
+#[test]
+fn models_of_the_virtual_set_keep_greys_hold_at_every_exposure_and_do_not_fold() {
+    let light = in_31_channels(&Illuminant::by_name("D65").unwrap().spectrum());
+    let camera = Sensitivities(Camera::simulated_one().sensitivities).under(&light).unwrap();
+    let surfaces: Vec<_> = chart::reflectances().into_iter().map(|s| (s, 1.0)).collect();
+    let set = VirtualSet::new(&surfaces).render(&camera, &light).unwrap();
+    let samples = samples();
+    let linear = fit::fit(&samples, Kind::Linear).unwrap().figures.leave_one_out.unwrap().de2000.mean;
+    for kind in [Kind::Spectral, Kind::Chromatic] {
+        let fit = spectral::fit_known_camera(&set, kind).unwrap();
+        let white = samples.white();
+        for k in [-20, -7, 0, 3, 20].map(|e| 2f64.powi(e)) {
+            let grey = fit.model.xyz([k; 3]);
+            let off = (grey.x - k * white.x).abs().max((grey.z - k * white.z).abs());
+            assert!(off.max((grey.y - k).abs()) < 1e-12 * k, "{kind} {k}: {grey:?}");
+            for rgb in [[0.9, 0.2, 0.05], [0.1, 0.7, 0.4], [0.0, 0.1, 1.0]] {
+                let (one, other) = (fit.model.xyz(rgb), fit.model.xyz(rgb.map(|v| v * k)));
+                let off = (one.x * k - other.x).abs().max((one.z * k - other.z).abs());
+                assert!(off.max((one.y * k - other.y).abs()) < 1e-12 * k, "{kind} {k}: {off:e}");
+            }
+        }
+        assert!(profile::lint::folds(&fit.model) <= 0.0, "{kind} folds");
+        let unseen = fit.figures(&samples).leave_one_out.unwrap().de2000.mean;
+        println!("{kind}: left out {unseen:.3}, linear {linear:.3}");
+        assert!(unseen < 0.5 * linear, "{kind}: {unseen} against {linear}");
     }
 }
 

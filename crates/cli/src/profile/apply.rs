@@ -66,7 +66,9 @@ fn model(profile: &Profile, light: Option<&str>) -> Result<profile::Model> {
             let kelvin = light.strip_suffix(['K', 'k']).and_then(|n| n.trim().parse::<f64>().ok());
             match kelvin.filter(|k| *k > 0.0 && k.is_finite()) {
                 Some(kelvin) => Ok(profile.model_for(kelvin)),
-                None => bail!("the profile has no light `{light}`; it has {choices}, or take a temperature (4000K)"),
+                None => bail!(
+                    "the profile has no light `{light}`; it has {choices}, or take a temperature (4000K)"
+                ),
             }
         }
     }

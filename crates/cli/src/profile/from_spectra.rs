@@ -6,7 +6,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use profile::{Kind, ProfileCamera};
 
-use crate::Outcome;
+use crate::{Common, Outcome};
 
 /// Make a profile from a camera's spectral sensitivities, without a shot
 #[derive(Debug, Args)]
@@ -61,7 +61,7 @@ pub(super) struct FromSpectra {
 }
 
 impl FromSpectra {
-    pub(super) fn run(self) -> Result<Outcome> {
+    pub(super) fn run(self, common: Common) -> Result<Outcome> {
         if matches!(self.model, Kind::Polynomial(_)) && !self.force {
             bail!(
                 "colours by {} change with exposure, so it is no good for pictures; take root-2, anchored or \
@@ -81,6 +81,9 @@ impl FromSpectra {
         };
         let profile = darkroot::from_spectra(&request)?;
         darkroot::store::write(&profile, &self.output, self.overwrite)?;
+        if common.quiet {
+            return Ok(Outcome::Done);
+        }
         for calibration in profile.calibrations() {
             let judged = calibration.figures.held_out.map(|e| ("held out", e));
             let judged = judged.or(calibration.figures.leave_one_out.map(|e| ("left out", e)));

@@ -10,7 +10,7 @@ use anyhow::Result;
 use clap::{Args, Subcommand};
 use darkroot::ProfileStore;
 
-use crate::Outcome;
+use crate::{Common, Outcome};
 
 /// Make, judge and use camera profiles
 #[derive(Debug, Args)]
@@ -29,13 +29,13 @@ enum Command {
 }
 
 impl Profile {
-    pub(crate) fn run(self) -> Result<Outcome> {
+    pub(crate) fn run(self, common: Common) -> Result<Outcome> {
         match self.command {
             Command::Apply(command) => command.run(),
             Command::Show(command) => command.run(),
             Command::List(command) => command.run(),
             Command::Lint(command) => command.run(),
-            Command::FromSpectra(command) => command.run(),
+            Command::FromSpectra(command) => command.run(common),
         }
     }
 }

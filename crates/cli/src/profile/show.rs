@@ -72,9 +72,7 @@ fn describe(text: &mut String, calibration: &Calibration) {
         let _ = writeln!(text, "  {:14}{:>28}   {:>28}", "", "dE2000 mean median 95 % max", "dE*uv");
     }
     for (label, Errors { de2000, de_uv }) in sets.into_iter().filter_map(|(l, e)| Some((l, e?))) {
-        let four = |s: profile::Summary| {
-            format!("{:7.2}{:7.2}{:7.2}{:7.2}", s.mean, s.median, s.p95, s.max)
-        };
+        let four = |s: profile::Summary| format!("{:7.2}{:7.2}{:7.2}{:7.2}", s.mean, s.median, s.p95, s.max);
         let _ = writeln!(text, "  {label:14}{}   {}", four(de2000), four(de_uv));
     }
     terms(text, &calibration.model);
@@ -139,7 +137,10 @@ fn plot(text: &mut String, calibration: &Calibration) {
             };
         }
     }
-    let _ = writeln!(text, "  residuals over a* (right) and b* (up), +-{reach:.0}; dE2000: . < 0.5 <= o < 1 <= O < 2 <= @");
+    let _ = writeln!(
+        text,
+        "  residuals over a* (right) and b* (up), +-{reach:.0}; dE2000: . < 0.5 <= o < 1 <= O < 2 <= @"
+    );
     for row in cells {
         let line: String = row.into_iter().collect();
         let _ = writeln!(text, "  {}", line.trim_end());

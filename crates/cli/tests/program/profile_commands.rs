@@ -125,7 +125,10 @@ fn the_same_spectra_make_the_same_file_to_the_last_byte() {
     let desk = desk();
     for kind in ["spectral", "chromatic", "half"] {
         for name in ["one.toml", "two.toml"] {
-            make(&desk, &["--light", "D50", "--model", kind, "--date", "2026-01-02", "-o", name, "--overwrite"]);
+            make(
+                &desk,
+                &["--light", "D50", "--model", kind, "--date", "2026-01-02", "-o", name, "--overwrite"],
+            );
         }
         assert_eq!(desk.read("one.toml"), desk.read("two.toml"), "{kind}");
         let text = String::from_utf8(desk.read("one.toml")).unwrap();
@@ -153,15 +156,12 @@ fn colours_through_a_profile_from_spectra_are_nearer_than_by_the_matrix() {
     let d50 = colour::white::D50;
     let error = |colours: Vec<[f64; 3]>| {
         let pairs = colours.into_iter().zip(&truth);
-        let sum: f64 = pairs
-            .map(|(c, t)| colour::difference::de2000(colour::Xyz::from(c).lab(d50), t.lab(d50)))
-            .sum();
+        let sum: f64 =
+            pairs.map(|(c, t)| colour::difference::de2000(colour::Xyz::from(c).lab(d50), t.lab(d50))).sum();
         sum / 24.0
     };
-    let by_matrix: Vec<[f64; 3]> = rows(&input)
-        .into_iter()
-        .map(|rgb| (matrix * colour::Vector3::from(rgb)).into())
-        .collect();
+    let by_matrix: Vec<[f64; 3]> =
+        rows(&input).into_iter().map(|rgb| (matrix * colour::Vector3::from(rgb)).into()).collect();
     let (own, other) = (error(rows(&run.out)), error(by_matrix));
     assert!(own < 0.6 * other, "{own} against {other}");
 }
@@ -192,7 +192,8 @@ fn faults_of_a_profile_end_with_code_3() {
     assert_eq!(good.code, 0, "{}", good.out);
     assert!(good.out.contains("the Jacobian changes its sign in 0.0 %"), "{}", good.out);
 
-    let refused = [&FROM_SPECTRA[..], &["--light", "D50", "--model", "polynomial-2", "-o", "bad.toml"]].concat();
+    let refused =
+        [&FROM_SPECTRA[..], &["--light", "D50", "--model", "polynomial-2", "-o", "bad.toml"]].concat();
     desk.fails(2, &refused, &["change with exposure", "--force"]);
     make(&desk, &["--light", "D50", "--model", "polynomial-2", "--force", "-o", "bad.toml"]);
     let bad = desk.run(&["profile", "lint", "--json", "bad.toml", "good.toml"]);

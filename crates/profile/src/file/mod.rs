@@ -109,7 +109,11 @@ mod tests {
             light: Light { name: name.into(), xy },
             kind,
             model,
-            figures: Figures { training: Some(errors(0.3)), leave_one_out: Some(errors(0.4)), held_out: None },
+            figures: Figures {
+                training: Some(errors(0.3)),
+                leave_one_out: Some(errors(0.4)),
+                held_out: None,
+            },
             patches: vec![Patch {
                 name: "dark \"skin\"".into(),
                 rgb: [0.1, 1.0 / 3.0, 1e-5],

@@ -239,9 +239,8 @@ fn figures(table: &FiguresTable) -> Result<Figures, String> {
         true => Ok(Summary { mean: v[0], median: v[1], p95: v[2], max: v[3] }),
         false => Err(NOT_FINITE.to_owned()),
     };
-    let read = |t: &ErrorsTable| {
-        Ok::<_, String>(Errors { de2000: summary(t.de2000)?, de_uv: summary(t.de_uv)? })
-    };
+    let read =
+        |t: &ErrorsTable| Ok::<_, String>(Errors { de2000: summary(t.de2000)?, de_uv: summary(t.de_uv)? });
     let errors = |table: Option<&ErrorsTable>| table.map(read).transpose();
     Ok(Figures {
         training: errors(table.training.as_ref())?,

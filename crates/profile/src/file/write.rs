@@ -71,8 +71,7 @@ fn write_calibration(text: &mut String, calibration: &Calibration) {
     }
     for (name, Errors { de2000, de_uv }) in sets.into_iter().filter_map(|(n, e)| Some((n, e?))) {
         let values = |s: Summary| [s.mean, s.median, s.p95, s.max];
-        let _ =
-            writeln!(text, "{name} = {{ de2000 = {:?}, de_uv = {:?} }}", values(de2000), values(de_uv));
+        let _ = writeln!(text, "{name} = {{ de2000 = {:?}, de_uv = {:?} }}", values(de2000), values(de_uv));
     }
     for patch in patches {
         let _ = write!(

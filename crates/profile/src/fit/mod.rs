@@ -67,7 +67,9 @@ pub enum FitError {
     #[error("the colours are not usable: {0}")]
     Samples(&'static str),
     /// Fewer colours than the model needs.
-    #[error("{kind} needs at least {need} colours and there are {have}; take a simpler model or a larger chart")]
+    #[error(
+        "{kind} needs at least {need} colours and there are {have}; take a simpler model or a larger chart"
+    )]
     TooFew {
         /// The kind of model.
         kind: Kind,

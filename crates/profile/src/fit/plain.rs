@@ -44,18 +44,15 @@ pub fn left_out_at_exposure(samples: &Samples, kind: Kind, exposure: f64) -> Res
             (terms.len(), Box::new(|rgb, term| polynomial::value(terms[term], rgb)))
         }
         Kind::Linear => (3, Box::new(|rgb, term| rgb[term])),
-        Kind::Root(order) => {
-            (order.terms().len(), Box::new(move |rgb, term| order.terms()[term].value(rgb)))
-        }
+        Kind::Root(order) => (order.terms().len(), Box::new(move |rgb, term| order.terms()[term].value(rgb))),
         _ => return Err(FitError::Undetermined { kind }),
     };
     let have = samples.len();
     if have < count + 1 {
         return Err(FitError::TooFew { kind, need: count + 1, have });
     }
-    let features = |k: f64| {
-        DMatrix::from_fn(have, count, |i, term| value(samples.rgb()[i].map(|v| v * k), term))
-    };
+    let features =
+        |k: f64| DMatrix::from_fn(have, count, |i, term| value(samples.rgb()[i].map(|v| v * k), term));
     let problem = Problem { rows: features(1.0), targets: targets(samples.xyz()), data: have, block: 1 };
     let estimates = problem.left_out_at(&features(exposure)).ok_or(FitError::Undetermined { kind })?;
     Ok(triples(&estimates).into_iter().map(|[x, y, z]| Xyz::new(x, y, z)).collect())

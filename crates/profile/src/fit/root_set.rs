@@ -67,8 +67,12 @@ impl Goal {
     fn new(set: &Rendered) -> Option<Self> {
         let samples = &set.samples;
         let weights = density::evened(samples.rgb(), &set.weights, set.real);
-        let metric: Vec<Matrix3> =
-            set.metric.iter().zip(&weights).map(|(m, w)| Some(mixed(m)? * w.sqrt())).collect::<Option<_>>()?;
+        let metric: Vec<Matrix3> = set
+            .metric
+            .iter()
+            .zip(&weights)
+            .map(|(m, w)| Some(mixed(m)? * w.sqrt()))
+            .collect::<Option<_>>()?;
         let width = features(ORDER, [0.0; 3]).len();
         let (count, columns) = (samples.len(), 3 * width);
 
@@ -82,9 +86,8 @@ impl Goal {
             let rest = Vector3::from(*xyz) - white * rgb[1];
             targets.rows_mut(3 * i, 3).copy_from(&(metric[i] * rest));
         }
-        let ridge = DVector::from_fn(columns, |c, _| {
-            if c < 6 { 0.0 } else { RIDGE.sqrt() * data.column(c).norm() }
-        });
+        let ridge =
+            DVector::from_fn(columns, |c, _| if c < 6 { 0.0 } else { RIDGE.sqrt() * data.column(c).norm() });
         let total = metric.iter().fold(Matrix3::zeros(), |sum, m| sum + m.transpose() * m);
         let root = total.cholesky()?.l().transpose();
         let points = saturated_points();

@@ -41,9 +41,8 @@ impl VirtualSet {
     pub fn new(surfaces: &[(Spectrum, f64)]) -> Self {
         let clamped = |s: &Spectrum| Spectrum(s.0.map(|v| v.clamp(LEAST, 1.0)));
         let real: Vec<(Spectrum, f64)> = surfaces.iter().map(|(s, w)| (clamped(s), *w)).collect();
-        let power = |n: i32| {
-            real.iter().map(move |(s, w)| (Spectrum(s.0.map(|v| v.powi(n))), POWER_WEIGHT * w))
-        };
+        let power =
+            |n: i32| real.iter().map(move |(s, w)| (Spectrum(s.0.map(|v| v.powi(n))), POWER_WEIGHT * w));
         let ideal = ideal().into_iter().map(|s| (s, IDEAL_WEIGHT));
         let all: Vec<(Spectrum, f64)> =
             real.iter().cloned().chain(power(2)).chain(power(3)).chain(ideal).collect();
@@ -72,9 +71,8 @@ impl Rendered {
     /// None in practice; the values were checked before.
     pub fn without(&self, left_out: impl Fn(usize) -> bool) -> Result<Self, FitError> {
         let powers = 3 * self.real;
-        let kept: Vec<usize> = (0..self.weights.len())
-            .filter(|i| *i >= powers || !left_out(i % self.real))
-            .collect();
+        let kept: Vec<usize> =
+            (0..self.weights.len()).filter(|i| *i >= powers || !left_out(i % self.real)).collect();
         let s = &self.samples;
         Ok(Self {
             samples: Samples::new(
@@ -102,10 +100,7 @@ impl Rendered {
 fn ideal() -> Vec<Spectrum> {
     let between = |share: f64| 0.02 + 0.9 * share;
     let both = |share: &dyn Fn(f64) -> f64| {
-        [
-            Spectrum::from_fn(|nm| between(share(nm))),
-            Spectrum::from_fn(|nm| between(1.0 - share(nm))),
-        ]
+        [Spectrum::from_fn(|nm| between(share(nm))), Spectrum::from_fn(|nm| between(1.0 - share(nm)))]
     };
     let mut all = Vec::new();
     for width in [40.0, 80.0, 140.0] {
