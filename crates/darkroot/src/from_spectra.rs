@@ -107,9 +107,8 @@ fn calibrate(
     let samples = render(training)?;
     let fit = match kind {
         Kind::Spectral | Kind::Chromatic => {
-            let surfaces: Vec<(Spectrum, f64)> = training.iter().map(|(_, s)| (s.clone(), 1.0)).collect();
-            let set = VirtualSet::new(&surfaces).render(&effective, spectrum).map_err(|e| fault(&e))?;
-            spectral::fit_known_camera(&set, kind).map_err(|e| fault(&e))?
+            let set = VirtualSet::of(&spectra_of(training));
+            spectral::fit_known_camera(&set, &effective, spectrum, &samples, kind).map_err(|e| fault(&e))?
         }
         _ => fit::fit(&samples, kind).map_err(|e| fault(&e))?.fit,
     };

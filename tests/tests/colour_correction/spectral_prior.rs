@@ -49,7 +49,7 @@ fn prior(test: &str, light: &Spectrum) -> Prior {
 
 fn surfaces() -> VirtualSet {
     let all = SURFACES.iter().flat_map(|name| data::reflectances(&format!("refl_iset_{name}")));
-    VirtualSet::new(&all.map(|s| (s, 1.0)).collect::<Vec<_>>())
+    VirtualSet::of(&all.collect::<Vec<_>>())
 }
 
 /// Normal noise of standard deviation 1 from a simple generator, the same on every machine.

@@ -77,12 +77,11 @@ fn greys_stay_grey_in_models_that_promise_it() {
 fn models_of_the_virtual_set_keep_greys_hold_at_every_exposure_and_do_not_fold() {
     let light = in_31_channels(&Illuminant::by_name("D65").unwrap().spectrum());
     let camera = Sensitivities(Camera::simulated_one().sensitivities).under(&light).unwrap();
-    let surfaces: Vec<_> = chart::reflectances().into_iter().map(|s| (s, 1.0)).collect();
-    let set = VirtualSet::new(&surfaces).render(&camera, &light).unwrap();
+    let set = VirtualSet::of(&chart::reflectances());
     let samples = samples();
     let linear = fit::fit(&samples, Kind::Linear).unwrap().figures.leave_one_out.unwrap().de2000.mean;
     for kind in [Kind::Spectral, Kind::Chromatic] {
-        let fit = spectral::fit_known_camera(&set, kind).unwrap();
+        let fit = spectral::fit_known_camera(&set, &camera, &light, &samples, kind).unwrap();
         let white = samples.white();
         for k in [-20, -7, 0, 3, 20].map(|e| 2f64.powi(e)) {
             let grey = fit.model.xyz([k; 3]);

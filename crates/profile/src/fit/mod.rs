@@ -18,9 +18,9 @@ pub mod hue_plane;
 
 pub mod prior;
 
-pub mod virtual_set;
+pub mod representatives;
 
-mod density;
+pub mod virtual_set;
 
 pub mod root_set;
 

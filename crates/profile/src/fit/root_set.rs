@@ -12,20 +12,23 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 use super::anchored::{features, psi_slopes, root_polynomial, saturated_points};
 use super::least_squares::Problem;
 use super::virtual_set::Rendered;
-use super::{FitError, density};
+use super::FitError;
 use crate::{Kind, Model, Order};
 
 const ORDER: Order = Order::Four;
-/// Ridge on the psi coefficients, as a share of the squared length of their columns.
-const RIDGE: f64 = 3e-6;
+/// Ridges on the psi coefficients, as shares of the squared length of their columns: the first, and larger ones where
+/// folds will not go.
+const RIDGES: [f64; 7] = [3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 1e-2];
 /// Weight of the pull of psi to zero at saturated colours, as a share of the data's.
 const ANCHORS: f64 = 1e-4;
 /// Weight of the slope of psi.
 const SLOPE: f64 = 0.02;
+/// Weight of an ideal band or edge.
+const IDEAL: f64 = 0.003;
 /// Share of plain XYZ in the metric, the rest being CIEDE2000.
-const PLAIN: f64 = 0.05;
+const PLAIN: f64 = 0.1;
 /// Least determinant, relative to the matrix's.
-const MARGIN: f64 = 0.2;
+const MARGIN: f64 = 0.3;
 /// A determinant of this share of the margin is enough.
 const ENOUGH: f64 = 0.5;
 /// Growth of the penalty's weight from round to round, and how many rounds and steps there are at most.
@@ -39,21 +42,42 @@ const STEPS: usize = 4;
 /// Colours that do not determine it.
 pub fn fit(set: &Rendered) -> Result<Model, FitError> {
     let undetermined = FitError::Undetermined { kind: Kind::Spectral };
-    let goal = Goal::new(set).ok_or(undetermined.clone())?;
-    let start = goal.solve(&[]).ok_or(undetermined.clone())?;
-    let unfolded = Folds::new(set.samples.white(), &start).remove(&goal, start);
+    let colours = Colours::new(set).ok_or(undetermined.clone())?;
+    let mut last = None;
+    for ridge in RIDGES {
+        let goal = colours.goal(ridge);
+        let start = goal.solve(&[]).ok_or(undetermined.clone())?;
+        let folds = Folds::new(set.samples.white(), &start);
+        let moved = folds.remove(&goal, start);
+        let done = folds.are_gone(&moved);
+        last = Some((folds, moved));
+        if done {
+            break;
+        }
+    }
+    let (folds, moved) = last.ok_or(undetermined.clone())?;
+    let unfolded = folds.shrunk(moved);
     let rows: Vec<[f64; 3]> = (0..unfolded.len() / 3)
         .map(|i| [unfolded[3 * i], unfolded[3 * i + 1], unfolded[3 * i + 2]])
         .collect();
     root_polynomial(ORDER, set.samples.white(), &rows).map(Model::from).ok_or(undetermined)
 }
 
-/// The least squares problem without folds in it, reduced to a triangle. Unknowns are X, Y and Z of the first
-/// feature, then of the second, and so on.
+/// The colours of the set as least squares, reduced to a triangle. Unknowns are X, Y and Z of the first feature, then
+/// of the second, and so on.
+struct Colours {
+    rows: DMatrix<f64>,
+    targets: DVector<f64>,
+    /// Length of each column of the colours' own rows.
+    lengths: DVector<f64>,
+    /// Sum of the colours' weights.
+    weight: f64,
+}
+
+/// The least squares problem without folds in it.
 struct Goal {
     rows: DMatrix<f64>,
     targets: DVector<f64>,
-    /// Sum of the colours' weights.
     weight: f64,
 }
 
@@ -63,16 +87,12 @@ struct Row {
     target: f64,
 }
 
-impl Goal {
+impl Colours {
     fn new(set: &Rendered) -> Option<Self> {
         let samples = &set.samples;
-        let weights = density::evened(samples.rgb(), &set.weights, set.real);
-        let metric: Vec<Matrix3> = set
-            .metric
-            .iter()
-            .zip(&weights)
-            .map(|(m, w)| Some(mixed(m)? * w.sqrt()))
-            .collect::<Option<_>>()?;
+        let weights = set.weights_with(IDEAL);
+        let metric: Vec<Matrix3> =
+            set.metric.iter().zip(&weights).map(|(m, w)| Some(mixed(m)? * w.sqrt())).collect::<Option<_>>()?;
         let width = features(ORDER, [0.0; 3]).len();
         let (count, columns) = (samples.len(), 3 * width);
 
@@ -86,8 +106,7 @@ impl Goal {
             let rest = Vector3::from(*xyz) - white * rgb[1];
             targets.rows_mut(3 * i, 3).copy_from(&(metric[i] * rest));
         }
-        let ridge =
-            DVector::from_fn(columns, |c, _| if c < 6 { 0.0 } else { RIDGE.sqrt() * data.column(c).norm() });
+        let lengths = DVector::from_fn(columns, |c, _| data.column(c).norm());
         let total = metric.iter().fold(Matrix3::zeros(), |sum, m| sum + m.transpose() * m);
         let root = total.cholesky()?.l().transpose();
         let points = saturated_points();
@@ -95,13 +114,9 @@ impl Goal {
             let bent = if f < 2 { 0.0 } else { features(ORDER, points[i])[f] };
             bent * (ANCHORS / points.len() as f64).sqrt()
         });
-        let slopes = slopes(samples.rgb(), &metric, width)?;
+        let slopes = slopes(samples.rgb(), &metric, width);
         let even = root * (3.0 / total.trace()).sqrt();
-        let penalties = [
-            DMatrix::from_diagonal(&ridge),
-            pull.kronecker(&to_dynamic(&root)),
-            slopes.kronecker(&to_dynamic(&even)),
-        ];
+        let penalties = [pull.kronecker(&to_dynamic(&root)), slopes.kronecker(&to_dynamic(&even))];
         let rows: usize = penalties.iter().map(DMatrix::nrows).sum();
         let mut all = data.resize_vertically(3 * count + rows, 0.0);
         let mut first = 3 * count;
@@ -115,10 +130,23 @@ impl Goal {
         Some(Self {
             rows: qr.r(),
             targets: rotated.rows(0, columns).into_owned(),
+            lengths,
             weight: weights.iter().sum(),
         })
     }
 
+    /// The problem with a ridge on the psi coefficients.
+    fn goal(&self, ridge: f64) -> Goal {
+        let columns = self.rows.ncols();
+        let mut rows = self.rows.clone().resize_vertically(2 * columns, 0.0);
+        for c in 6..columns {
+            rows[(columns + c, c)] = ridge.sqrt() * self.lengths[c];
+        }
+        Goal { rows, targets: self.targets.clone().resize_vertically(2 * columns, 0.0), weight: self.weight }
+    }
+}
+
+impl Goal {
     /// The unknowns with the least sum of squares, further rows included.
     fn solve(&self, further: &[Row]) -> Option<DVector<f64>> {
         let own = self.rows.nrows();
@@ -147,7 +175,7 @@ fn mixed(w: &Matrix3) -> Option<Matrix3> {
 }
 
 /// A triangle that stands for the slopes of psi at all colours, times the brightness of each.
-fn slopes(rgb: &[[f64; 3]], metric: &[Matrix3], width: usize) -> Option<DMatrix<f64>> {
+fn slopes(rgb: &[[f64; 3]], metric: &[Matrix3], width: usize) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(3 * rgb.len(), width - 2);
     for (i, (rgb, w)) in rgb.iter().zip(metric).enumerate() {
         let size = SLOPE * rgb[0].max(rgb[1]).max(rgb[2]) * (w.norm_squared() / 3.0).sqrt();
@@ -160,7 +188,7 @@ fn slopes(rgb: &[[f64; 3]], metric: &[Matrix3], width: usize) -> Option<DMatrix<
     let triangle = all.qr().r();
     let mut padded = DMatrix::zeros(triangle.nrows(), width);
     padded.columns_mut(2, width - 2).copy_from(&triangle);
-    Some(padded)
+    padded
 }
 
 fn to_dynamic(m: &Matrix3) -> DMatrix<f64> {
@@ -210,7 +238,7 @@ impl Folds {
         self.slopes.iter().map(|s| self.jacobian(s, unknowns).determinant() / self.norm).collect()
     }
 
-    /// Moves from `start` to unknowns whose determinants are all large enough.
+    /// Moves from `start` towards unknowns whose determinants are all large enough; it may not get there.
     fn remove(&self, goal: &Goal, start: DVector<f64>) -> DVector<f64> {
         let mut unknowns = start;
         let mut determinants = self.determinants(&unknowns);
@@ -225,7 +253,11 @@ impl Folds {
             }
             weight *= GROWTH;
         }
-        self.shrunk(unknowns)
+        unknowns
+    }
+
+    fn are_gone(&self, unknowns: &DVector<f64>) -> bool {
+        least(&self.determinants(unknowns)) >= ENOUGH * MARGIN
     }
 
     /// One step of Gauss and Newton's method, shortened until the cost falls. `None` when it does not.
@@ -274,7 +306,7 @@ impl Folds {
             x.rows_mut(6, unknowns.len() - 6).scale_mut(share);
             x
         };
-        let stands = |share: f64| least(&self.determinants(&scaled(share))) >= 0.5 * ENOUGH * MARGIN;
+        let stands = |share: f64| self.are_gone(&scaled(share));
         if stands(1.0) {
             return unknowns;
         }
@@ -291,25 +323,12 @@ fn least(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// Chromaticities with the largest channel 1: 12 levels from 0.02 in equal ratios, and six levels of a plain cube.
+/// Chromaticities with the largest channel 1: 20 levels from 0.002 in equal ratios.
 fn grid() -> Vec<[f64; 3]> {
-    let ratios: Vec<f64> = (0..12).map(|i| 0.02f64.powf(1.0 - f64::from(i) / 11.0)).collect();
-    let cube = [0.02, 0.1, 0.25, 0.5, 0.75, 1.0];
-    let faces = |levels: &[f64]| -> Vec<[f64; 3]> {
-        let mut all = Vec::new();
-        for &a in levels {
-            for &b in levels {
-                all.extend([[1.0, a, b], [a, 1.0, b], [a, b, 1.0]]);
-            }
-        }
-        all
-    };
-    let mut all = faces(&ratios);
-    all.extend(faces(&cube));
-    // Ratios within the cube that are not its levels.
-    for &top in &cube[1..5] {
-        let levels: Vec<f64> = cube.iter().map(|v| v / top).filter(|v| *v <= 1.0).collect();
-        all.extend(faces(&levels));
-    }
-    all
+    const LEVELS: i32 = 20;
+    const FIRST: f64 = 0.002;
+    let levels = (0..LEVELS).map(|i| FIRST.powf(1.0 - f64::from(i) / f64::from(LEVELS - 1)));
+    let levels: Vec<f64> = levels.collect();
+    let faces = |&a: &f64, &b: &f64| [[1.0, a, b], [a, 1.0, b], [a, b, 1.0]];
+    levels.iter().flat_map(|a| levels.iter().flat_map(move |b| faces(a, b))).collect()
 }

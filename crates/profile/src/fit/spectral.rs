@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::prior::{Hyperparameters, Observed, Prior};
 use super::virtual_set::{Rendered, VirtualSet};
 use super::{Fit, FitError, Samples, chromatic, root_set};
+use crate::spectra::Effective;
 use crate::{Kind, Model};
 
 /// Most fits that leaving out takes; with more colours, groups are left out together.
@@ -55,18 +56,25 @@ pub fn fit(samples: &Samples, knowledge: Knowledge<'_>, kind: Kind) -> Result<Fi
     })
 }
 
-/// Fits a model of the spectral prior to a virtual set through a camera that is known. Left out, one in 24 at a
-/// time, are the real surfaces with their powers.
+/// Fits a model of the spectral prior to a virtual set through a camera that is known. A surface that the set was
+/// made from is left out together with all that the same surface of the set stands for, one in 24 of these at a time.
 ///
 /// # Errors
 /// Colours that do not determine the model.
-pub fn fit_known_camera(set: &Rendered, kind: Kind) -> Result<Fit, FitError> {
-    let model = model_of(set, kind)?;
-    let groups = set.real.min(MOST_FITS);
-    let without = |group: usize| model_of(&set.without(|surface| surface % groups == group)?, kind);
+pub fn fit_known_camera(
+    set: &VirtualSet,
+    camera: &Effective,
+    light: &Spectrum,
+    surfaces: &Samples,
+    kind: Kind,
+) -> Result<Fit, FitError> {
+    let rendered = set.render(camera, light)?;
+    let model = model_of(&rendered, kind)?;
+    let groups = rendered.real().min(MOST_FITS);
+    let without = |group: usize| model_of(&rendered.without(|surface| surface % groups == group)?, kind);
     let models = (0..groups).into_par_iter().map(without).collect::<Result<Vec<_>, _>>()?;
-    let rgb = &set.samples.rgb()[..set.real];
-    let left_out = rgb.iter().enumerate().map(|(i, rgb)| models[i % groups].xyz(*rgb)).collect();
+    let pairs = surfaces.rgb().iter().zip(set.stands_for());
+    let left_out = pairs.map(|(rgb, owner)| models[owner % groups].xyz(*rgb)).collect();
     Ok(Fit { model, left_out, settings: String::new() })
 }
 

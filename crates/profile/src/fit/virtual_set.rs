@@ -4,23 +4,26 @@
 use colour::{Matrix3, Spectrum};
 
 use super::metric::de2000_weights;
+use super::representatives::clusters;
 use super::{FitError, Samples};
 use crate::spectra::Effective;
 
 /// Weight of squares and cubes of reflectances (deeper, more saturated colours of the same materials).
 const POWER_WEIGHT: f64 = 0.03;
-/// Weight of ideal bands and edges.
-const IDEAL_WEIGHT: f64 = 0.03;
 /// Reflectances are kept at or above this, and camera RGB at or above a tenth of it.
 const LEAST: f64 = 1e-4;
+/// Most clusters that surfaces are sorted into.
+const CLUSTERS: usize = 240;
 
-/// Reflectances of real surfaces, their powers, and ideal ones, with the weight of each.
+/// Reflectances of real surfaces, their powers, and ideal ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VirtualSet {
+    /// Real surfaces, then their squares, then their cubes, then ideal ones.
     reflectances: Vec<Spectrum>,
+    /// Weight of each real surface; the mean is 1.
     weights: Vec<f64>,
-    /// How many of the first reflectances are those of real surfaces.
-    real: usize,
+    /// Which real surface stands for each one that the set was made from.
+    stands_for: Vec<usize>,
 }
 
 /// A virtual set as a camera sees it.
@@ -28,27 +31,45 @@ pub struct VirtualSet {
 pub struct Rendered {
     /// The colours.
     pub samples: Samples,
-    /// Weight of each in a fit.
+    /// Weight of each real surface.
     pub weights: Vec<f64>,
     /// What XYZ means in CIEDE2000 at each.
     pub metric: Vec<Matrix3>,
-    /// How many of the first are real surfaces.
-    pub real: usize,
 }
 
 impl VirtualSet {
-    /// The set that grows from reflectances of real surfaces, each with its weight.
-    pub fn new(surfaces: &[(Spectrum, f64)]) -> Self {
+    /// The set that grows from reflectances of real surfaces. Where they are many, the means of alike ones stand for
+    /// them, with the square root of their number as weight: a compromise between the colours that are common in
+    /// the collections and those that are rare in them, which are as common in the world.
+    pub fn of(surfaces: &[Spectrum]) -> Self {
+        let clusters = clusters(surfaces, CLUSTERS);
+        let mut stands_for = vec![0; surfaces.len()];
+        for (c, cluster) in clusters.iter().enumerate() {
+            for member in &cluster.members {
+                stands_for[*member] = c;
+            }
+        }
+        let weights: Vec<f64> = clusters.iter().map(|c| (c.members.len() as f64).sqrt()).collect();
+        let means: Vec<Spectrum> = clusters.into_iter().map(|c| c.mean).collect();
+        Self { stands_for, ..Self::weighted(&means, &weights) }
+    }
+
+    /// The set that grows from reflectances as they are, each with a weight.
+    pub fn weighted(surfaces: &[Spectrum], weights: &[f64]) -> Self {
         let clamped = |s: &Spectrum| Spectrum(s.0.map(|v| v.clamp(LEAST, 1.0)));
-        let real: Vec<(Spectrum, f64)> = surfaces.iter().map(|(s, w)| (clamped(s), *w)).collect();
-        let power =
-            |n: i32| real.iter().map(move |(s, w)| (Spectrum(s.0.map(|v| v.powi(n))), POWER_WEIGHT * w));
-        let ideal = ideal().into_iter().map(|s| (s, IDEAL_WEIGHT));
-        let all: Vec<(Spectrum, f64)> =
-            real.iter().cloned().chain(power(2)).chain(power(3)).chain(ideal).collect();
-        let count = real.len();
-        let (reflectances, weights) = all.into_iter().unzip();
-        Self { reflectances, weights, real: count }
+        let real: Vec<Spectrum> = surfaces.iter().map(clamped).collect();
+        let power = |n: i32| real.iter().map(move |s| Spectrum(s.0.map(|v| v.powi(n))));
+        let mean = weights.iter().sum::<f64>() / weights.len().max(1) as f64;
+        Self {
+            reflectances: real.iter().cloned().chain(power(2)).chain(power(3)).chain(ideal()).collect(),
+            weights: weights.iter().map(|w| w / mean).collect(),
+            stands_for: (0..surfaces.len()).collect(),
+        }
+    }
+
+    /// Which real surface of the set stands for each one that it was made from.
+    pub fn stands_for(&self) -> &[usize] {
+        &self.stands_for
     }
 
     /// The set through a camera, under the light that the camera stands under.
@@ -60,30 +81,21 @@ impl VirtualSet {
         let positive = whole.rgb().iter().map(|rgb| rgb.map(|v| v.max(LEAST / 10.0))).collect();
         let samples = Samples::new(positive, whole.xyz().to_vec(), whole.white())?;
         let metric = de2000_weights(samples.xyz(), samples.white());
-        Ok(Rendered { samples, weights: self.weights.clone(), metric, real: self.real })
+        Ok(Rendered { samples, weights: self.weights.clone(), metric })
     }
 }
 
 impl Rendered {
-    /// The set without some of the real surfaces and their powers.
-    ///
-    /// # Errors
-    /// None in practice; the values were checked before.
-    pub fn without(&self, left_out: impl Fn(usize) -> bool) -> Result<Self, FitError> {
-        let powers = 3 * self.real;
-        let kept: Vec<usize> =
-            (0..self.weights.len()).filter(|i| *i >= powers || !left_out(i % self.real)).collect();
-        let s = &self.samples;
-        Ok(Self {
-            samples: Samples::new(
-                kept.iter().map(|i| s.rgb()[*i]).collect(),
-                kept.iter().map(|i| s.xyz()[*i]).collect(),
-                s.white(),
-            )?,
-            weights: kept.iter().map(|i| self.weights[*i]).collect(),
-            metric: kept.iter().map(|i| self.metric[*i]).collect(),
-            real: kept.iter().filter(|i| **i < self.real).count(),
-        })
+    /// Number of real surfaces.
+    pub fn real(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// Weight of every colour, where ideal ones have the weight `ideal`.
+    pub fn weights_with(&self, ideal: f64) -> Vec<f64> {
+        let powers = self.weights.iter().map(|w| w * POWER_WEIGHT);
+        let known = self.weights.iter().copied().chain(powers.clone()).chain(powers);
+        known.chain(std::iter::repeat(ideal)).take(self.samples.len()).collect()
     }
 
     /// The real surfaces alone.
@@ -91,8 +103,28 @@ impl Rendered {
     /// # Errors
     /// None in practice; the values were checked before.
     pub fn real_samples(&self) -> Result<Samples, FitError> {
+        let (s, count) = (&self.samples, self.real());
+        Samples::new(s.rgb()[..count].to_vec(), s.xyz()[..count].to_vec(), s.white())
+    }
+
+    /// The set without some of the real surfaces and their powers.
+    ///
+    /// # Errors
+    /// None in practice; the values were checked before.
+    pub fn without(&self, left_out: impl Fn(usize) -> bool) -> Result<Self, FitError> {
+        let real = self.real();
+        let kept: Vec<usize> =
+            (0..self.samples.len()).filter(|i| *i >= 3 * real || !left_out(i % real)).collect();
         let s = &self.samples;
-        Samples::new(s.rgb()[..self.real].to_vec(), s.xyz()[..self.real].to_vec(), s.white())
+        Ok(Self {
+            samples: Samples::new(
+                kept.iter().map(|i| s.rgb()[*i]).collect(),
+                kept.iter().map(|i| s.xyz()[*i]).collect(),
+                s.white(),
+            )?,
+            weights: kept.iter().filter(|i| **i < real).map(|i| self.weights[*i]).collect(),
+            metric: kept.iter().map(|i| self.metric[*i]).collect(),
+        })
     }
 }
 
