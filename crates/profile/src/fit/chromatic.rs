@@ -99,7 +99,8 @@ fn features(rgb: [f64; 3], centres: &[Vector3]) -> Vec<f64> {
 /// colours weighs 1 in the mean.
 fn row_weights(set: &Rendered) -> Vec<f64> {
     let square = |w: &Matrix3| w.norm_squared() / 3.0;
-    let squares: Vec<f64> = set.metric.iter().zip(set.weights_with(IDEAL)).map(|(w, k)| square(w) * k).collect();
+    let squares: Vec<f64> =
+        set.metric.iter().zip(set.weights_with(IDEAL)).map(|(w, k)| square(w) * k).collect();
     let mean = |rgb: &[f64; 3]| rgb.iter().sum::<f64>() / 3.0;
     let total: f64 = squares.iter().zip(set.samples.rgb()).map(|(s, rgb)| s * mean(rgb).powi(2)).sum();
     let norm = total / squares.len() as f64;

@@ -16,6 +16,8 @@ pub mod anchored;
 
 pub mod hue_plane;
 
+pub mod population;
+
 pub mod prior;
 
 pub mod representatives;

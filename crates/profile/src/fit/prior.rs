@@ -10,6 +10,7 @@ use colour::Spectrum;
 use colour::spectrum::SAMPLES;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use super::population::{ChannelPopulation, Population};
 use crate::spectra::Effective;
 
 /// Length over which a camera's departure from the others is smooth, nm.
@@ -69,26 +70,29 @@ pub struct Observed<'a> {
 }
 
 impl Prior {
-    /// Mean and covariance over cameras under a light, or over several lights where the light is not known.
-    /// `None` for fewer than two.
-    pub fn of(cameras: &[Effective]) -> Option<Self> {
-        if cameras.len() < 2 {
-            return None;
-        }
-        let channel = |c: usize| {
-            let all: Vec<DVector<f64>> =
-                cameras.iter().map(|camera| DVector::from_column_slice(&camera.0[c].0)).collect();
-            let count = all.len() as f64;
-            let mean = all.iter().sum::<DVector<f64>>() / count;
-            let mut covariance = DMatrix::zeros(SAMPLES, SAMPLES);
-            for one in &all {
-                let off = one - &mean;
-                covariance += &off * off.transpose() / (count - 1.0);
+    /// The prior of a population of cameras under a light. `None` where a channel sees nothing of it.
+    ///
+    /// With the mean m and the covariance S of sensitivities of sum 1, light l gives e the mean l m / (l.m) and the
+    /// covariance diag(l) S diag(l) / (l.m)^2, to first order.
+    pub fn under(cameras: &Population, light: &Spectrum) -> Option<Self> {
+        let light = DVector::from_column_slice(&light.0);
+        let channel = |channel: &ChannelPopulation| {
+            let seen = light.dot(&channel.mean);
+            if !(seen > 0.0 && seen.is_finite()) {
+                return None;
             }
-            let square = all.iter().map(|one| one.component_mul(one)).sum::<DVector<f64>>() / count;
-            ChannelPrior::new(mean, covariance, &square.map(f64::sqrt))
+            let scaled = |v: &DVector<f64>| v.component_mul(&light) / seen;
+            let mean = scaled(&channel.mean);
+            let mut covariance = DMatrix::zeros(SAMPLES, SAMPLES);
+            for component in &channel.components {
+                let component = scaled(component);
+                covariance += &component * component.transpose();
+            }
+            let size = DVector::from_fn(SAMPLES, |i, _| (mean[i] * mean[i] + covariance[(i, i)]).sqrt());
+            Some(ChannelPrior::new(mean, covariance, &size))
         };
-        Some(Self { channels: [channel(0), channel(1), channel(2)] })
+        let [r, g, b] = cameras.channels.each_ref().map(channel);
+        Some(Self { channels: [r?, g?, b?] })
     }
 
     /// The hyperparameters under which the patches are most likely, all channels together. `None` when the patches

@@ -112,9 +112,8 @@ mod tests {
         let band = |centre: f64, height: f64| {
             Spectrum::from_fn(|nm| 0.1 + height * (-((nm - centre) / 40.0).powi(2)).exp())
         };
-        let all: Vec<Spectrum> = (0..30)
-            .map(|i| band([450.0, 550.0, 620.0][i % 3], 0.5 + 0.002 * (i / 3) as f64))
-            .collect();
+        let all: Vec<Spectrum> =
+            (0..30).map(|i| band([450.0, 550.0, 620.0][i % 3], 0.5 + 0.002 * (i / 3) as f64)).collect();
         let found = clusters(&all, 3);
         assert_eq!(found.len(), 3);
         for cluster in &found {

@@ -9,10 +9,10 @@
 use colour::{Matrix3, Vector3, Xyz};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
+use super::FitError;
 use super::anchored::{features, psi_slopes, root_polynomial, saturated_points};
 use super::least_squares::Problem;
 use super::virtual_set::Rendered;
-use super::FitError;
 use crate::{Kind, Model, Order};
 
 const ORDER: Order = Order::Four;
@@ -91,8 +91,12 @@ impl Colours {
     fn new(set: &Rendered) -> Option<Self> {
         let samples = &set.samples;
         let weights = set.weights_with(IDEAL);
-        let metric: Vec<Matrix3> =
-            set.metric.iter().zip(&weights).map(|(m, w)| Some(mixed(m)? * w.sqrt())).collect::<Option<_>>()?;
+        let metric: Vec<Matrix3> = set
+            .metric
+            .iter()
+            .zip(&weights)
+            .map(|(m, w)| Some(mixed(m)? * w.sqrt()))
+            .collect::<Option<_>>()?;
         let width = features(ORDER, [0.0; 3]).len();
         let (count, columns) = (samples.len(), 3 * width);
 

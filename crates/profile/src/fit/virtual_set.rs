@@ -4,6 +4,7 @@
 use colour::{Matrix3, Spectrum};
 
 use super::metric::de2000_weights;
+use super::population::parse_reflectances;
 use super::representatives::clusters;
 use super::{FitError, Samples};
 use crate::spectra::Effective;
@@ -52,6 +53,14 @@ impl VirtualSet {
         let weights: Vec<f64> = clusters.iter().map(|c| (c.members.len() as f64).sqrt()).collect();
         let means: Vec<Spectrum> = clusters.into_iter().map(|c| c.mean).collect();
         Self { stands_for, ..Self::weighted(&means, &weights) }
+    }
+
+    /// The set that grows from the representative reflectances that are built into the program (`data/README.md`).
+    /// `None` only if their text is broken.
+    pub fn builtin() -> Option<Self> {
+        let surfaces = parse_reflectances(include_str!("../../data/reflectances.csv"))?;
+        let (surfaces, weights): (Vec<Spectrum>, Vec<f64>) = surfaces.into_iter().unzip();
+        Some(Self::weighted(&surfaces, &weights))
     }
 
     /// The set that grows from reflectances as they are, each with a weight.
