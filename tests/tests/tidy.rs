@@ -13,22 +13,23 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 /// Which of our crates each crate uses, as `docs/architecture.md` has it. Tests and benches may use any.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("colour", &[]),
     ("photo", &["colour"]),
     ("profile", &["colour"]),
     ("raw", &["colour", "photo"]),
     ("encode", &["colour", "photo"]),
+    ("chart", &["colour", "photo"]),
     ("simulate", &["colour", "photo"]),
     ("develop", &["colour", "photo", "profile"]),
-    ("darkroot", &["colour", "develop", "encode", "photo", "profile", "raw"]),
-    // Options of the program are types of `develop` and `raw`.
-    ("cli", &["darkroot", "develop", "raw"]),
-    ("tests", &["colour", "develop", "photo", "profile", "simulate"]),
+    ("darkroot", &["chart", "colour", "develop", "encode", "photo", "profile", "raw"]),
+    // Options of the program are types of `develop` and `raw`; it shows profiles.
+    ("cli", &["colour", "darkroot", "develop", "profile", "raw"]),
+    ("tests", &["colour", "darkroot", "develop", "photo", "profile", "simulate"]),
 ];
 
 /// Crates that must stay pure: no files, no clock, no environment (architecture, invariant 7).
-const PURE: [&str; 4] = ["colour", "photo", "profile", "develop"];
+const PURE: [&str; 5] = ["colour", "photo", "profile", "chart", "develop"];
 
 fn metadata() -> serde_json::Value {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -1,0 +1,9 @@
+//! Colour charts: their layouts and reference colours, finding one in a picture, measuring its patches.
+//!
+//! **What it does not do:** it reads no files and fits no colours; text comes from the caller, fits are in `profile`.
+
+pub mod layout;
+pub use layout::{Layout, PatchPlace};
+
+pub mod geometry;
+pub use geometry::{Homography, Quad};
