@@ -40,6 +40,9 @@ pub use from_spectra::{FromSpectra, from_spectra};
 
 pub mod evaluate;
 
+pub mod calibrate;
+pub use calibrate::{Calibrated, MeasuredPatch, calibrate};
+
 pub mod store;
 pub use store::ProfileStore;
 

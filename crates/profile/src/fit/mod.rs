@@ -31,6 +31,9 @@ pub mod chromatic;
 pub mod spectral;
 pub use spectral::Knowledge;
 
+pub mod white;
+pub use white::white_through;
+
 pub mod choose;
 pub use choose::{Candidate, fit};
 

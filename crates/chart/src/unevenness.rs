@@ -1,0 +1,110 @@
+//! Uneven light over a chart, and glare in front of it, from the chart's own patches.
+
+use colour::Xyz;
+use nalgebra::{DMatrix, DVector};
+
+/// Rounds of reweighting, which keep single patches from bending the plane.
+const ROUNDS: usize = 5;
+/// Relative residual at which a patch begins to lose weight.
+const SOFT: f64 = 0.02;
+
+/// Light over a chart, relative to its middle: exp(x a + y b), with x and y from -1 (left, top) to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Slope {
+    /// Change from the middle to the right edge, as a natural logarithm.
+    pub across: f64,
+    /// Change from the middle to the bottom edge.
+    pub down: f64,
+}
+
+impl Slope {
+    /// Light at a place, relative to the middle.
+    pub fn at(self, [x, y]: [f64; 2]) -> f64 {
+        (x * self.across + y * self.down).exp()
+    }
+
+    /// Largest relative difference of light over the chart.
+    pub fn range(self) -> f64 {
+        (2.0 * (self.across.abs() + self.down.abs())).exp() - 1.0
+    }
+
+    /// The slope that explains measured light against expected light best, robustly. `places` are those of the
+    /// patches; `None` for fewer than six patches with light.
+    pub fn of(places: &[[f64; 2]], measured: &[f64], expected: &[f64]) -> Option<Self> {
+        let rows: Vec<([f64; 2], f64)> = places
+            .iter()
+            .zip(measured.iter().zip(expected))
+            .filter(|(_, (m, e))| **m > 0.0 && **e > 0.0)
+            .map(|(p, (m, e))| (*p, (m / e).ln()))
+            .collect();
+        if rows.len() < 6 {
+            return None;
+        }
+        let mut weights = vec![1.0; rows.len()];
+        let mut found = DVector::zeros(3);
+        for _ in 0..ROUNDS {
+            let design = DMatrix::from_fn(rows.len(), 3, |i, k| {
+                let ([x, y], _) = rows[i];
+                weights[i] * [1.0, x, y][k]
+            });
+            let target = DVector::from_fn(rows.len(), |i, _| weights[i] * rows[i].1);
+            found = design.svd(true, true).solve(&target, 1e-12).ok()?;
+            for (weight, ([x, y], value)) in weights.iter_mut().zip(&rows) {
+                let off = value - found[0] - found[1] * x - found[2] * y;
+                *weight = (1.0 / (1.0 + (off / SOFT).powi(2))).sqrt();
+            }
+        }
+        Some(Self { across: found[1], down: found[2] })
+    }
+}
+
+/// Stray light over the whole chart, as a share of the light of the white, from its neutral patches: what is left where
+/// the line through measured over expected light meets black. 0 where there are fewer than three neutral patches.
+pub fn glare(measured: &[f64], expected: &[Xyz], neutral: &[bool]) -> f64 {
+    let points: Vec<(f64, f64)> = measured
+        .iter()
+        .zip(expected)
+        .zip(neutral)
+        .filter(|(_, neutral)| **neutral)
+        .map(|((m, e), _)| (e.y, *m))
+        .collect();
+    if points.len() < 3 {
+        return 0.0;
+    }
+    // Relative errors count: dark patches tell of glare, bright ones of the gain.
+    let weight = |y: f64| 1.0 / (0.01 + y).powi(2);
+    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| weight(*x) * of(*x, *y)).sum::<f64>();
+    let (n, x, y) = (sum(&|_, _| 1.0), sum(&|x, _| x), sum(&|_, y| y));
+    let (xx, xy) = (sum(&|x, _| x * x), sum(&|x, y| x * y));
+    let gain = (n * xy - x * y) / (n * xx - x * x);
+    let offset = (y - gain * x) / n;
+    if gain > 0.0 && offset.is_finite() { offset / gain } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_is_found_in_spite_of_some_wrong_patches() {
+        let places: Vec<[f64; 2]> =
+            (0..24).map(|i| [(i % 6) as f64 / 2.5 - 1.0, (i / 6) as f64 / 1.5 - 1.0]).collect();
+        let slope = Slope { across: 0.1, down: -0.05 };
+        let expected: Vec<f64> = (0..24).map(|i| 0.05 + f64::from(i) / 30.0).collect();
+        let mut measured: Vec<f64> =
+            places.iter().zip(&expected).map(|(p, e)| 0.7 * e * slope.at(*p)).collect();
+        measured[7] *= 1.3;
+        measured[20] *= 0.8;
+        let found = Slope::of(&places, &measured, &expected).unwrap();
+        assert!((found.across - 0.1).abs() < 0.01 && (found.down + 0.05).abs() < 0.01, "{found:?}");
+        assert!((slope.range() - (0.3f64.exp() - 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn glare_is_what_black_has_too_much() {
+        let expected: Vec<Xyz> = [0.9, 0.59, 0.36, 0.2, 0.09, 0.03].map(|y| Xyz::new(y, y, y)).to_vec();
+        let measured: Vec<f64> = expected.iter().map(|e| 0.5 * (e.y + 0.01)).collect();
+        assert!((glare(&measured, &expected, &[true; 6]) - 0.01).abs() < 1e-9);
+        assert!(glare(&measured, &expected, &[false; 6]).abs() < 1e-12);
+    }
+}
