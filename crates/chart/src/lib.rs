@@ -5,5 +5,11 @@
 pub mod layout;
 pub use layout::{Layout, PatchPlace};
 
+pub mod measure;
+pub use measure::{Measurement, measure};
+
+pub mod reference;
+pub use reference::{Reference, ReferenceColour};
+
 pub mod geometry;
 pub use geometry::{Homography, Quad};

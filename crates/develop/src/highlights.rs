@@ -3,8 +3,11 @@
 //! After balancing, the channels clip at different values (their multipliers), so that a white surface that is
 //! too bright turns pink or green. Rebuilding estimates a clipped sample from the other two channels around it:
 //! their mean, plus the typical difference between this channel and that mean where the picture begins to clip
-//! (measured once over the frame). Where every channel is clipped there is nothing left to estimate from, and
-//! the result is made neutral.
+//! (measured once over the frame). Clipped samples lie on the bright side of an edge, so bright samples around
+//! them tell more than dark ones. Where every channel is clipped there is nothing left to estimate from, and the
+//! result is made neutral.
+
+use std::array::from_fn;
 
 use photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 use profile::simd::vectorised;
@@ -72,6 +75,7 @@ fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets
     // Bayer shows every colour within one pixel, larger arrays within two.
     let reach = if cfa.width() <= 2 { 1 } else { BORDER };
     let plane = |x: usize, y: usize| cfa.at(x, y).plane().unwrap_or(1);
+    let scale = limits.map(|l| 1.0 / l);
     let seen = mosaic.samples.clone();
     for y in BORDER..height - BORDER {
         for x in BORDER..width - BORDER {
@@ -80,19 +84,33 @@ fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets
             if v < CLIPPED * limits[own] {
                 continue;
             }
-            let (mut sums, mut counts) = ([0f32; 3], [0f32; 3]);
+            let (mut sums, mut weights) = ([0f32; 3], [0f32; 3]);
             for v in y - reach..=y + reach {
                 for u in x - reach..=x + reach {
-                    let c = plane(u, v);
-                    sums[c] += seen[v * width + u];
-                    counts[c] += 1.0;
+                    let (c, light) = (plane(u, v), seen[v * width + u].max(0.0));
+                    // Fourth power (a Lehmer mean): of a reflex and its dark surroundings only the reflex counts.
+                    let weight = light * light * light * light;
+                    sums[c] += weight * light;
+                    weights[c] += weight;
                 }
             }
-            let mean = |c: usize| sums[c] / counts[c].max(1.0);
-            let others = (mean((own + 1) % 3) + mean((own + 2) % 3)) / 2.0;
-            mosaic.samples[y * width + x] = v.max(others + offsets[own]);
+            let mut around: [f32; 3] = from_fn(|c| sums[c] / weights[c].max(f32::MIN_POSITIVE));
+            around[own] = v;
+            let others = (around[(own + 1) % 3] + around[(own + 2) % 3]) / 2.0;
+            let white = around.iter().fold(v, |a, &b| a.max(b));
+            let neutral = neutrality(around, scale);
+            let estimate = others + offsets[own];
+            mosaic.samples[y * width + x] = v.max(estimate + (white - estimate) * neutral);
         }
     }
+}
+
+/// How neutral to make a colour: 0 when some channel is far from its limit, 1 when all are clipped.
+#[inline(always)]
+fn neutrality(rgb: [f32; 3], scale: [f32; 3]) -> f32 {
+    let share = (rgb[0] * scale[0]).min(rgb[1] * scale[1]).min(rgb[2] * scale[2]);
+    let t = ((share - NEARLY) * (1.0 / (CLIPPED - NEARLY))).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }
 
 /// Makes neutral what is clipped in every channel.
@@ -104,9 +122,7 @@ pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
         #[inline(always)]
         || {
             for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                let share = (*r * scale[0]).min(*g * scale[1]).min(*b * scale[2]);
-                let t = ((share - NEARLY) * (1.0 / (CLIPPED - NEARLY))).clamp(0.0, 1.0);
-                let weight = t * t * (3.0 - 2.0 * t);
+                let weight = neutrality([*r, *g, *b], scale);
                 // The brightest channel is the best guess of how bright the surface is at least.
                 let white = r.max(*g).max(*b);
                 *r += (white - *r) * weight;

@@ -22,6 +22,9 @@ pub use recipe::{Balance, Bits, Crop, Demosaic, Exposure, Highlights, Look, Outp
 pub mod plan;
 pub use plan::{Colours, Error, Plan, plan};
 
+pub mod frame;
+pub use frame::{Frame, frame};
+
 pub mod noise;
 pub mod saturation;
 
@@ -39,6 +42,7 @@ pub mod correct;
 pub mod corrections;
 pub mod demosaic;
 pub mod exposure;
+pub mod fringe;
 pub mod gamut;
 pub mod highlights;
 pub mod level;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::plan::{Plan, border};
 use crate::recipe::{Bits, OutputSpace};
 use crate::tile::tile;
-use crate::{correct, corrections, demosaic, exposure, gamut, highlights, tone, transfer};
+use crate::{correct, corrections, demosaic, exposure, fringe, gamut, highlights, tone, transfer};
 
 /// Rows of the finished picture that one task makes.
 const BAND_ROWS: usize = 96;
@@ -96,6 +96,7 @@ impl Plan {
         highlights::treat(&mut mosaic, &self.highlights);
         let mut camera = demosaic::demosaic(&mosaic, self.demosaic, border);
         demosaic::debias::debias(&mosaic, border, &self.noise, &mut camera);
+        fringe::cut(&mosaic, border, &self.highlights, &mut camera);
         drop(mosaic);
         if !self.picture_corrections.is_empty() {
             let area = capture.active_area;
