@@ -8,8 +8,13 @@ pub use layout::{Layout, PatchPlace};
 pub mod measure;
 pub use measure::{Measurement, measure};
 
+pub mod unevenness;
+pub use unevenness::{Slope, glare};
+
 pub mod reference;
 pub use reference::{Reference, ReferenceColour};
+
+pub mod windows;
 
 pub mod geometry;
 pub use geometry::{Homography, Quad};

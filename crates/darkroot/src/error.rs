@@ -55,6 +55,14 @@ pub enum Error {
         /// As it was given.
         text: String,
     },
+    /// A shot of a chart cannot be used.
+    #[error("{path}: {what}", path = path.display())]
+    Chart {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with what to do.
+        what: String,
+    },
     /// A light that nobody knows.
     #[error("`{text}` is no light; known are {names}")]
     Light {

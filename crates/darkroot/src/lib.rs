@@ -49,6 +49,14 @@ pub use store::ProfileStore;
 pub mod error;
 pub use error::Error;
 
+mod find_chart;
+
+pub mod shot;
+pub use shot::{Shot, ShotOptions};
+
+pub mod make_profile;
+pub use make_profile::{ChartRequest, MadeProfile, make_profile};
+
 mod files;
 pub use files::abandon;
 

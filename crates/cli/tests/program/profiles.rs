@@ -83,7 +83,7 @@ fn a_profile_file_that_is_broken_says_where() {
         ("[camera]", "[camera", "profile"),
         ("version = 1", "version = 2", "version 2"),
         ("\"(rb)^1/2\" = [0.0142, -0.05, 0.0049]\n", "", "missing"),
-        ("0.68", "nan", "not a number"),
+        ("0.68", "nan", "not a finite number"),
         ("origin", "orgin", "orgin"),
         ("root-2", "root-7", "root-7"),
     ];
