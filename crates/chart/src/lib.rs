@@ -16,5 +16,7 @@ pub use reference::{Reference, ReferenceColour};
 
 pub mod windows;
 
+pub mod builtin_reference;
+
 pub mod geometry;
 pub use geometry::{Homography, Quad};

@@ -10,6 +10,7 @@ mod profile;
 mod progress;
 mod shell;
 mod values;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -47,6 +48,7 @@ enum Command {
     Develop(develop::Develop),
     Inspect(inspect::Inspect),
     Profile(profile::Profile),
+    Verify(verify::Verify),
     Evaluate(evaluate::Evaluate),
     Completions(shell::Completions),
     Man(shell::Man),
@@ -78,6 +80,7 @@ fn main() -> ExitCode {
         Command::Develop(command) => command.run(cli.common),
         Command::Inspect(command) => command.run(),
         Command::Profile(command) => command.run(cli.common),
+        Command::Verify(command) => command.run(cli.common),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),

@@ -52,6 +52,16 @@ pub(crate) fn kind(text: &str) -> Result<profile::Kind, String> {
     text.parse().map_err(|e: profile::kind::UnknownKind| e.to_string())
 }
 
+/// `--corners`.
+pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 4], String> {
+    let usage = || format!("`{text}` is not four corners: write x,y,x,y,x,y,x,y in pixels");
+    let numbers = numbers::<f64>(text).ok_or_else(usage)?;
+    match numbers[..] {
+        [a, b, c, d, e, f, g, h] if numbers.iter().all(|n| n.is_finite()) => Ok([[a, b], [c, d], [e, f], [g, h]]),
+        _ => Err(usage()),
+    }
+}
+
 /// `--exposure`.
 pub(crate) fn stops(text: &str) -> Result<f64, String> {
     const MOST: f64 = 20.0;

@@ -63,6 +63,14 @@ pub enum Error {
         /// What is wrong, with what to do.
         what: String,
     },
+    /// A raw file that does not say what an export needs.
+    #[error("{path}: {what}", path = path.display())]
+    Neutral {
+        /// The file.
+        path: PathBuf,
+        /// What is missing, with what to do.
+        what: String,
+    },
     /// A light that nobody knows.
     #[error("`{text}` is no light; known are {names}")]
     Light {

@@ -105,3 +105,11 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8], overwrite: bool) -> Result<
         Failed::Io(e) | Failed::Other(e) => Error::write(path, &e),
     })
 }
+
+/// Writes a text as a file, whole or not at all. Missing folders are made.
+///
+/// # Errors
+/// A file that exists and is not to be replaced, or that cannot be written.
+pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), Error> {
+    write_whole(path, text.as_bytes(), overwrite)
+}

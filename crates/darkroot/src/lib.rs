@@ -40,6 +40,8 @@ pub use from_spectra::{FromSpectra, from_spectra};
 
 pub mod evaluate;
 
+pub mod export;
+
 pub mod calibrate;
 pub use calibrate::{Calibrated, MeasuredPatch, calibrate};
 
@@ -49,16 +51,22 @@ pub use store::ProfileStore;
 pub mod error;
 pub use error::Error;
 
+pub mod charts;
+
 mod find_chart;
 
 pub mod shot;
 pub use shot::{Shot, ShotOptions};
 
+pub mod verify;
+
+pub mod report;
+
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};
 
 mod files;
-pub use files::abandon;
+pub use files::{abandon, write_text};
 
 #[cfg(feature = "imagepipe")]
 mod pipe;

@@ -11,6 +11,8 @@ pub mod reflectance;
 
 pub mod chart;
 
+mod chart_scene;
+
 pub mod scene;
 pub use scene::{Patch, Scene};
 

@@ -3,6 +3,7 @@
 use colour::{Lab, Spectrum, Xyz};
 use photo::{Rect, Size};
 
+use crate::chart_scene::{ChartScene, FRAME_REFLECTANCE, WALL_REFLECTANCE};
 use crate::exact::exp2;
 use crate::reflectance::of_lab;
 use crate::still_life::{self, StillLife};
@@ -54,6 +55,7 @@ enum Motif {
     Flat,
     Ramp { from: f64, to: f64 },
     Gradient,
+    Chart(ChartScene),
     StillLife(StillLife),
 }
 
@@ -83,6 +85,23 @@ impl Scene {
         let corners = [(50.0, 60.0, 35.0), (85.0, 0.0, 75.0), (35.0, 15.0, -50.0), (55.0, -45.0, 35.0)];
         let materials = corners.map(|(l, a, b)| of_lab(Lab { l, a, b })).to_vec();
         Self { size, materials, motif: Motif::Gradient, patches: Vec::new() }
+    }
+
+    /// A chart with patches of these reflectances, row by row, before a grey wall. `corners` are the outer corners of the
+    /// corner patches, in pixels (integers are pixel centres), clockwise from the first patch; `gap` is the width of
+    /// the gap between patches, in patch widths.
+    pub fn chart(
+        size: Size,
+        corners: [[f64; 2]; 4],
+        patches: &[Spectrum],
+        columns: usize,
+        gap: f64,
+    ) -> Self {
+        let rows = patches.len() / columns.max(1);
+        let around = [FRAME_REFLECTANCE, WALL_REFLECTANCE].map(Spectrum::constant);
+        let materials = patches.iter().take(columns * rows).cloned().chain(around).collect();
+        let motif = Motif::Chart(ChartScene::new(corners, columns, rows, gap));
+        Self { size, materials, motif, patches: Vec::new() }
     }
 
     /// Size in pixels.
@@ -135,6 +154,7 @@ impl Scene {
         match &self.motif {
             Motif::StillLife(motif) => motif.pixel(x, y, palette),
             Motif::Flat => palette[0],
+            Motif::Chart(chart) => chart.pixel(x, y, palette),
             Motif::Ramp { from, to } => {
                 let light = exp2(from + (to - from) * across) as f32;
                 palette[0].map(|v| v * light)
@@ -191,6 +211,18 @@ mod tests {
         assert!(xyz.iter().flatten().all(|v| v.is_finite() && *v > 0.0));
         let mean = xyz.iter().map(|p| p[1]).sum::<f32>() / xyz.len() as f32;
         assert!((0.05..0.3).contains(&mean), "{mean}");
+    }
+
+    #[test]
+    fn a_chart_in_perspective_has_its_patches_where_they_should_be() {
+        let patches: Vec<Spectrum> = (1..=6).map(|i| Spectrum::constant(f64::from(i) / 10.0)).collect();
+        let corners = [[20.0, 10.0], [90.0, 20.0], [85.0, 70.0], [15.0, 60.0]];
+        let size = Size { width: 110, height: 80 };
+        let xyz = Scene::chart(size, corners, &patches, 3, 0.2).xyz(&Spectrum::constant(1.0));
+        let y = |x: usize, y: usize| xyz[y * 110 + x][1];
+        for (x, row, expected) in [(26, 18, 0.1), (84, 24, 0.3), (22, 54, 0.4), (78, 63, 0.6), (2, 2, 0.22)] {
+            assert!((y(x, row) - expected).abs() < 1e-5, "{x}, {row}: {}", y(x, row));
+        }
     }
 
     #[test]

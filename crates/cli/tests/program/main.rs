@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
 
 mod broken;
+mod chart;
 mod engines;
 mod formats;
 mod help;

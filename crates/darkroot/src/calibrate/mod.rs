@@ -8,7 +8,7 @@ use profile::fit::population::Population;
 use profile::fit::prior::Prior;
 use profile::fit::virtual_set::VirtualSet;
 use profile::fit::{self, FitError, Knowledge, Samples, spectral, white_through};
-use profile::{Calibration, Figures, Kind, Order};
+use profile::{Calibration, Errors, Figures, Kind, Model, Order};
 
 pub use patches::{Judged, MeasuredPatch};
 
@@ -145,6 +145,44 @@ pub fn calibrate(
     };
     let compared = compared.into_iter().map(|(c, _)| c).collect();
     Ok(Calibrated { calibration, compared, white_rgb, patches: judged, notes })
+}
+
+/// What a given model makes of measured patches, balanced by the white of their own light.
+///
+/// # Errors
+/// Too few usable patches.
+pub fn judge(
+    light: &NamedLight,
+    patches: &[MeasuredPatch],
+    model: &Model,
+) -> Result<(Vec<Judged>, Errors), CalibrateError> {
+    let usable: Vec<&MeasuredPatch> = patches.iter().filter(|p| p.excluded.is_none()).collect();
+    if usable.len() < 6 {
+        let clipped = patches.iter().filter(|p| p.is_clipped()).count();
+        return Err(CalibrateError::TooFewPatches { left: usable.len(), all: patches.len(), clipped });
+    }
+    let light_white = light.light.xy.xyz();
+    let reference = patches::Reference::new(patches, light, light_white, &mut Vec::new());
+    let raw = Samples::new(
+        usable.iter().map(|p| p.rgb).collect(),
+        usable.iter().map(|p| reference.xyz(p)).collect(),
+        light_white,
+    )?;
+    let white_rgb = white_through(&raw)?;
+    let to_d50 = bradford(light_white, white::D50);
+    let judged: Vec<Judged> = patches
+        .iter()
+        .map(|p| {
+            let rgb = [0, 1, 2].map(|c| p.rgb[c] / white_rgb[c]);
+            let truth = Xyz::from(to_d50 * Vector3::from(reference.xyz(p)));
+            Judged::new(p, rgb, truth, model.xyz(rgb), None)
+        })
+        .collect();
+    let used = || judged.iter().filter(|j| j.excluded.is_none());
+    let estimates: Vec<Xyz> = used().map(|j| j.corrected).collect();
+    let truths: Vec<Xyz> = used().map(|j| j.reference).collect();
+    let errors = Errors::between(&estimates, &truths, white::D50);
+    Ok((judged, errors))
 }
 
 /// Fits every kind that can be fitted.

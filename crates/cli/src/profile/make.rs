@@ -1,0 +1,287 @@
+//! `darkroot profile SHOT --chart CHART --light LIGHT`.
+
+use std::path::PathBuf;
+
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+use darkroot::make_profile::MadeLight;
+use darkroot::shot::{ShotOptions, Verdict};
+use darkroot::{ChartRequest, Settings, charts, light, make_profile, report};
+use profile::Kind;
+use serde_json::json;
+
+use crate::{Common, Outcome};
+
+/// How a shot of a chart is read.
+#[derive(Debug, Args)]
+pub(crate) struct ShotArgs {
+    /// The chart: classic24, passport24, mini24, nano24, sg140, dc240, spyder24, spyder48, or a file that describes one
+    #[arg(long, value_name = "CHART", default_value = "classic24")]
+    chart: String,
+
+    /// What the patches are: a built-in reference or a file (CGATS, .cie, .ti3, CxF 3, CSV; Lab, XYZ or spectra)
+    #[arg(long, value_name = "REFERENCE")]
+    reference: Option<String>,
+
+    /// Corners of the chart by hand: outer corners of the corner patches in pixels of the developed picture, from patch
+    /// 1 on clockwise as the chart is printed
+    #[arg(long, value_name = "X,Y,X,Y,X,Y,X,Y", value_parser = crate::values::corners)]
+    corners: Option<[[f64; 2]; 4]>,
+
+    /// A shot of an even surface in the same light, to take light fall-off out
+    #[arg(long, value_name = "FILE")]
+    flat: Option<PathBuf>,
+
+    /// A shot with the lens closed, to subtract
+    #[arg(long, value_name = "FILE")]
+    dark: Option<PathBuf>,
+
+    /// Take the slope of light over the chart out, as far as the patches show it
+    #[arg(long)]
+    even_out: bool,
+
+    /// Take out the stray light that the grey patches show
+    #[arg(long)]
+    correct_glare: bool,
+
+    /// Leave a patch out, by its name; several may be given
+    #[arg(long, value_name = "PATCH")]
+    exclude: Vec<String>,
+
+    /// Use the shot even if it is not good enough
+    #[arg(long)]
+    accept: bool,
+}
+
+impl ShotArgs {
+    fn options(&self) -> ShotOptions {
+        ShotOptions {
+            corners: self.corners,
+            flat: self.flat.clone(),
+            dark: self.dark.clone(),
+            even_out: self.even_out,
+            correct_glare: self.correct_glare,
+            exclude: self.exclude.clone(),
+            accept: self.accept,
+        }
+    }
+
+    /// A request for shots, each with its light.
+    pub(crate) fn request(
+        &self,
+        files: &[PathBuf],
+        lights: &[String],
+        kind: Option<Kind>,
+        date: &str,
+    ) -> Result<ChartRequest> {
+        let found = lights.iter().map(|l| light::find(l)).collect::<Result<Vec<_>, _>>()?;
+        let of = |i: usize| match found.as_slice() {
+            [only] => Ok(only.clone()),
+            all if all.len() == files.len() => Ok(all[i].clone()),
+            all => bail!(
+                "there are {} shots and {} lights; give one light for all, or one for each shot in the same order",
+                files.len(),
+                all.len()
+            ),
+        };
+        let shots = files.iter().enumerate().map(|(i, f)| Ok((f.clone(), of(i)?))).collect::<Result<_>>()?;
+        let layout = charts::layout(&self.chart)?;
+        let reference = charts::reference(self.reference.as_deref(), &layout)?;
+        Ok(ChartRequest {
+            shots,
+            layout,
+            reference: reference.colours,
+            reference_name: reference.name,
+            reference_sha256: reference.sha256,
+            options: self.options(),
+            kind,
+            date: date.to_owned(),
+        })
+    }
+}
+
+/// Make a profile from shots of a colour chart
+#[derive(Debug, Args)]
+pub(super) struct Make {
+    /// Raw shots of the chart
+    #[arg(value_name = "SHOT")]
+    shots: Vec<PathBuf>,
+
+    #[command(flatten)]
+    shot: ShotArgs,
+
+    /// Light of the shots: D50, A, LED-B3, 5200K, x,y, lamp.csv; one for all, or one for each shot. Shots under one
+    /// light are averaged
+    #[arg(long = "light", value_name = "LIGHT")]
+    lights: Vec<String>,
+
+    /// The model; without it the best by cross-validation
+    #[arg(long, value_name = "MODEL", value_parser = crate::values::kind)]
+    model: Option<Kind>,
+
+    /// Allow a model that is no good for pictures (plain polynomials)
+    #[arg(long)]
+    force: bool,
+
+    /// Profile to write; the name of the first shot with .toml if not given
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Report to write: one HTML page with pictures, plots and figures
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+
+    /// Date to write into the profile, YYYY-MM-DD; none if not given
+    #[arg(long, default_value = "")]
+    date: String,
+
+    /// Figures as JSON on stdout
+    #[arg(long)]
+    json: bool,
+
+    /// Replace existing files
+    #[arg(long)]
+    overwrite: bool,
+}
+
+impl Make {
+    pub(super) fn run(self, common: Common) -> Result<Outcome> {
+        let Some(first) = self.shots.first() else {
+            bail!("give a shot of a chart, or a command; `darkroot help profile` shows both");
+        };
+        if self.lights.is_empty() {
+            bail!("give the light of the shot: `--light D50`, `--light 5200K` or a file of its spectrum");
+        }
+        if matches!(self.model, Some(Kind::Polynomial(_))) && !self.force {
+            bail!("colours by a plain polynomial change with exposure; take another model or add `--force`");
+        }
+        let output = self.output.clone().unwrap_or_else(|| first.with_extension("toml"));
+        let request = self.shot.request(&self.shots, &self.lights, self.model, &self.date)?;
+        let made = match make_profile(&request, &Settings::default()) {
+            Ok(made) => made,
+            Err(fault) => {
+                crate::say(format_args!("error: {fault}"));
+                return Ok(Outcome::SomeFailed);
+            }
+        };
+        darkroot::store::write(&made.profile, &output, self.overwrite)?;
+        if let Some(path) = &self.report {
+            darkroot::write_text(path, &report::html(&made, &request.layout), self.overwrite)
+                .with_context(|| "the profile is written, the report is not")?;
+        }
+        if self.json {
+            for light in &made.lights {
+                use std::io::Write as _;
+                writeln!(std::io::stdout(), "{}", figures(light))?;
+            }
+        }
+        if !common.quiet {
+            crate::say(format_args!("{}: profile for {}", output.display(), made.profile.camera().name()));
+            made.lights.iter().for_each(say_light);
+        }
+        Ok(Outcome::Done)
+    }
+}
+
+fn say_light(light: &MadeLight) {
+    for shot in &light.shots {
+        for gate in shot.gates.iter().filter(|g| g.verdict != Verdict::Good) {
+            crate::say(format_args!("  warning: {}: {}; {}", shot.path.display(), gate.words, gate.advice));
+        }
+        for note in &shot.notes {
+            crate::say(format_args!("  note: {note}"));
+        }
+    }
+    for note in &light.calibrated.notes {
+        crate::say(format_args!("  note: {note}"));
+    }
+    let chosen = light.calibrated.calibration.kind;
+    crate::say(format_args!("  {}, dE2000 (mean / max):  training   left out", light.light.light.name));
+    for compared in &light.calibrated.compared {
+        let mark = if compared.kind == chosen { "->" } else { "  " };
+        let kind = compared.kind.to_string();
+        match &compared.result {
+            Ok(f) => {
+                let pair = |e: Option<profile::Errors>| match e.map(|e| e.de2000).filter(|s| s.max.is_finite()) {
+                    Some(s) => format!("{:5.2} / {:5.2}", s.mean, s.max),
+                    None => "not determined".to_owned(),
+                };
+                crate::say(format_args!("  {mark} {kind:13} {}   {}", pair(f.training), pair(f.leave_one_out)));
+            }
+            Err(reason) => crate::say(format_args!("  {mark} {kind:13} {reason}")),
+        }
+    }
+}
+
+/// Everything about one light, for machines.
+pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
+    let summary = |e: Option<profile::Errors>| {
+        e.map(|e| {
+            let s = e.de2000;
+            json!({ "mean": s.mean, "median": s.median, "p95": s.p95, "max": s.max })
+        })
+    };
+    let compared: Vec<_> = light
+        .calibrated
+        .compared
+        .iter()
+        .map(|c| match &c.result {
+            Ok(f) => json!({
+                "model": c.kind.to_string(),
+                "training": summary(f.training),
+                "leave_one_out": summary(f.leave_one_out),
+            }),
+            Err(reason) => json!({ "model": c.kind.to_string(), "error": reason }),
+        })
+        .collect();
+    let shots: Vec<_> = light
+        .shots
+        .iter()
+        .map(|s| {
+            let gates: Vec<_> = s
+                .gates
+                .iter()
+                .map(|g| json!({
+                    "name": g.name,
+                    "verdict": match g.verdict {
+                        Verdict::Good => "good",
+                        Verdict::Warning => "warning",
+                        Verdict::Refused => "failed",
+                    },
+                    "value": g.value,
+                    "words": g.words,
+                }))
+                .collect();
+            json!({
+                "file": s.path.display().to_string(),
+                "corners": s.corners,
+                "confidence": s.confidence,
+                "glare": s.glare,
+                "unevenness": s.slope.range(),
+                "gates": gates,
+            })
+        })
+        .collect();
+    let patches: Vec<_> = light
+        .calibrated
+        .patches
+        .iter()
+        .map(|p| json!({
+            "name": p.name,
+            "rgb": p.rgb,
+            "uncertainty": p.uncertainty,
+            "de2000": p.de2000,
+            "left_out_de2000": p.left_out,
+            "excluded": p.excluded,
+        }))
+        .collect();
+    json!({
+        "light": light.light.light.name,
+        "model": light.calibrated.calibration.kind.to_string(),
+        "models": compared,
+        "white_rgb": light.calibrated.white_rgb,
+        "nonlinearity": light.nonlinearity,
+        "shots": shots,
+        "patches": patches,
+    })
+}

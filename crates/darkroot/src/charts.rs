@@ -1,0 +1,84 @@
+//! Charts and references as people name them.
+
+use std::path::Path;
+
+use chart::{Layout, Reference, ReferenceColour};
+use sha2::{Digest, Sha256};
+
+use crate::Error;
+
+/// A reference and where it is from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedReference {
+    /// The colours.
+    pub colours: Reference,
+    /// Name of the file or of the built-in reference.
+    pub name: String,
+    /// SHA-256 of the file, hexadecimal; empty for those built in.
+    pub sha256: String,
+}
+
+/// The layout of a chart: one that is built in, or a file that describes one (TOML or Argyll's `.cht`).
+///
+/// # Errors
+/// Neither of both, or a file that describes none.
+pub fn layout(text: &str) -> Result<Layout, Error> {
+    if let Some(layout) = Layout::by_name(text) {
+        return Ok(layout);
+    }
+    let path = Path::new(text);
+    if path.is_file() {
+        let content = std::fs::read_to_string(path).map_err(|e| Error::read(path, &e))?;
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        let read = if toml { Layout::from_toml(&content) } else { Layout::from_cht(&stem, &content) };
+        return read.map_err(|e| Error::Chart { path: path.to_owned(), what: e.to_string() });
+    }
+    let names: Vec<String> = Layout::builtin().into_iter().map(|l| l.name).collect();
+    let what = format!("is no chart; known are {}, or a file that describes one", names.join(", "));
+    Err(Error::Chart { path: path.to_owned(), what })
+}
+
+/// The reference colours of a chart: a file, one that is built in by name, or the built-in one of the layout.
+///
+/// # Errors
+/// Neither of both, a file that cannot be used, or a chart without a built-in reference.
+pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, Error> {
+    let fault = |what: String| {
+        Err(Error::Chart { path: text.unwrap_or(&layout.name).into(), what })
+    };
+    let built_in = |name: &str| {
+        let patches = chart::builtin_reference::builtin(name)?;
+        let patches = patches.into_iter().map(|(n, lab)| (n, ReferenceColour::Lab(lab))).collect();
+        Some(NamedReference { colours: Reference { patches }, name: name.to_owned(), sha256: String::new() })
+    };
+    // Charts of the 24 classic patches have one reference, whatever their size.
+    let own_reference = |layout: &Layout| match layout.name.as_str() {
+        "classic24" | "passport24" | "mini24" | "nano24" => Some("classic24"),
+        "sg140" => Some("sg140"),
+        _ => None,
+    };
+    let Some(text) = text else {
+        return match own_reference(layout).and_then(built_in) {
+            Some(found) => Ok(found),
+            None => fault(format!(
+                "has no built-in reference; give one with `--reference` (a file, or {})",
+                chart::builtin_reference::names().collect::<Vec<_>>().join(", ")
+            )),
+        };
+    };
+    if let Some(found) = built_in(text) {
+        return Ok(found);
+    }
+    let path = Path::new(text);
+    let bytes = std::fs::read(path).map_err(|e| Error::read(path, &e))?;
+    let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+    let Ok(content) = String::from_utf8(bytes) else {
+        return fault("is not text; known are CGATS, CxF 3 and CSV".to_owned());
+    };
+    let colours = match Reference::parse(&content) {
+        Ok(colours) => colours,
+        Err(e) => return fault(e.to_string()),
+    };
+    Ok(NamedReference { colours, name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), sha256 })
+}

@@ -1,0 +1,40 @@
+//! What an export needs besides the profile: the neutrals of a camera, and a file that is written whole.
+
+use std::path::Path;
+
+use colour::Xy;
+use develop::CameraMatrix;
+use profile::Profile;
+
+use crate::{Error, Settings, files, store};
+
+/// Unbalanced camera RGB of these whites, by the matrices that a raw file of the profile's camera carries or that
+/// the decoder knows for it. The largest channel of each is 1.
+///
+/// # Errors
+/// A file that cannot be read, one of another camera, or one without matrices.
+pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec<[f64; 3]>, Error> {
+    let settings = Settings::default();
+    let bytes = files::read(raw_file)?;
+    let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
+        .map_err(|source| Error::Raw { path: raw_file.to_owned(), source })?;
+    let unusable = |what: String| Error::Neutral { path: raw_file.to_owned(), what };
+    if !store::is_for(profile, &capture.camera) {
+        let (camera, of) = (capture.camera.name(), profile.camera().name());
+        return Err(unusable(format!("it was taken with {camera}, not with {of}; name a raw file of that camera")));
+    }
+    let matrix = CameraMatrix::of(&capture);
+    let neutral = |white: &Xy| matrix.as_ref().and_then(|m| m.neutral_of(*white));
+    let all: Option<Vec<[f64; 3]>> = whites.iter().map(neutral).collect();
+    all.ok_or_else(|| {
+        unusable("no color matrix of its camera is known; give the neutrals yourself with `--neutral`".to_owned())
+    })
+}
+
+/// Writes an exported file, whole or not at all. Missing folders are made.
+///
+/// # Errors
+/// A file that exists and is not to be replaced, or that cannot be written.
+pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), Error> {
+    files::write_whole(path, bytes, overwrite)
+}

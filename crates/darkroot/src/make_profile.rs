@@ -1,0 +1,178 @@
+//! Shots of a chart to a profile.
+
+use std::path::PathBuf;
+
+use chart::{Layout, Reference};
+use profile::{Kind, Origin, Profile, ProfileCamera};
+
+use crate::calibrate::{Calibrated, Choice, MeasuredPatch, calibrate};
+use crate::light::NamedLight;
+use crate::shot::{Shot, ShotOptions, View, open};
+use crate::{Error, Settings};
+
+/// What a profile is made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChartRequest {
+    /// Shots of the chart with the light of each. Shots under one light are averaged.
+    pub shots: Vec<(PathBuf, NamedLight)>,
+    /// The chart.
+    pub layout: Layout,
+    /// What its patches are.
+    pub reference: Reference,
+    /// Name of the reference, for the profile ("classic24-after-2014", "my-chart.cie").
+    pub reference_name: String,
+    /// SHA-256 of its file; empty for those built in.
+    pub reference_sha256: String,
+    /// How the shots are treated.
+    pub options: ShotOptions,
+    /// The model; the best one if not given.
+    pub kind: Option<Kind>,
+    /// Day that the profile carries, YYYY-MM-DD; may be empty.
+    pub date: String,
+}
+
+/// One light of a made profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MadeLight {
+    /// The light.
+    pub light: NamedLight,
+    /// The shots under it.
+    pub shots: Vec<Shot>,
+    /// Largest departure from proportionality between shots of different exposure times, relative; none where there
+    /// is nothing to compare.
+    pub nonlinearity: Option<f64>,
+    /// The calibration.
+    pub calibrated: Calibrated,
+    /// The first shot, to look at.
+    pub view: View,
+}
+
+/// A profile and how it came about.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MadeProfile {
+    /// The profile.
+    pub profile: Profile,
+    /// Its lights, as they were given.
+    pub lights: Vec<MadeLight>,
+}
+
+/// Measures the shots and fits the profile.
+///
+/// # Errors
+/// Shots that cannot be used, shots of several cameras, too few patches.
+pub fn make_profile(request: &ChartRequest, settings: &Settings) -> Result<MadeProfile, Error> {
+    let mut lights: Vec<MadeLight> = Vec::new();
+    let mut names: Vec<&str> = Vec::new();
+    for (_, light) in &request.shots {
+        if !names.contains(&light.light.name.as_str()) {
+            names.push(&light.light.name);
+        }
+    }
+    let mut camera: Option<photo::Camera> = None;
+    for name in names {
+        let mut opened = Vec::new();
+        for (path, light) in request.shots.iter().filter(|(_, l)| l.light.name == name) {
+            let (shot, view) = open(path, &request.layout, &request.reference, &request.options, settings)?;
+            let first = camera.get_or_insert_with(|| shot.camera.clone());
+            if *first != shot.camera {
+                let what = format!(
+                    "was taken with {} {}, another shot with {} {}; a profile is for one camera",
+                    shot.camera.common_make, shot.camera.common_model, first.common_make, first.common_model
+                );
+                return Err(Error::Chart { path: path.clone(), what });
+            }
+            opened.push((shot, view, light));
+        }
+        let Some((_, _, light)) = opened.first() else { continue };
+        let light: NamedLight = (*light).clone();
+        let (shots, mut views): (Vec<Shot>, Vec<View>) =
+            opened.into_iter().map(|(shot, view, _)| (shot, view)).unzip();
+        let patches = averaged(&shots);
+        let choice = Choice { kind: request.kind };
+        let calibrated = calibrate(&light, &patches, &choice)
+            .map_err(|e| Error::Fit { light: name.to_owned(), what: e.to_string() })?;
+        let nonlinearity = nonlinearity(&shots);
+        lights.push(MadeLight { light, shots, nonlinearity, calibrated, view: views.swap_remove(0) });
+    }
+    let camera = camera.ok_or(Error::NoLight)?;
+    let calibrations = lights.iter().map(|l| l.calibrated.calibration.clone()).collect();
+    let count = request.shots.len();
+    let origin = Origin {
+        summary: format!("{count} shot{} of a chart", if count == 1 { "" } else { "s" }),
+        chart: request.layout.title.clone(),
+        reference: request.reference_name.clone(),
+        reference_sha256: request.reference_sha256.clone(),
+        date: request.date.clone(),
+        program: format!("darkroot {}", crate::VERSION),
+        ..Origin::default()
+    };
+    let alias = format!("{} {}", camera.make, camera.model);
+    let of = ProfileCamera {
+        make: camera.common_make.clone(),
+        model: camera.common_model.clone(),
+        aliases: if alias.trim() == format!("{} {}", camera.common_make, camera.common_model).trim() {
+            Vec::new()
+        } else {
+            vec![alias]
+        },
+    };
+    let profile = Profile::new(of, calibrations, origin).ok_or(Error::NoLight)?;
+    Ok(MadeProfile { profile, lights })
+}
+
+/// Shots under one light as one: each scaled to the exposure of the first, patches that are clipped in a shot taken
+/// from the others.
+fn averaged(shots: &[Shot]) -> Vec<MeasuredPatch> {
+    let Some((first, others)) = shots.split_first() else { return Vec::new() };
+    if others.is_empty() {
+        return first.patches.clone();
+    }
+    let scales: Vec<f64> = shots.iter().map(|s| ratio(&first.patches, &s.patches)).collect();
+    let one = |i: usize| {
+        let usable: Vec<(&MeasuredPatch, f64)> = shots
+            .iter()
+            .zip(&scales)
+            .map(|(s, k)| (&s.patches[i], *k))
+            .filter(|(p, _)| p.excluded.is_none())
+            .collect();
+        let mut patch = first.patches[i].clone();
+        let Some(((best, _), count)) = usable.first().zip(Some(usable.len() as f64)) else { return patch };
+        patch.excluded = None;
+        patch.clipped = best.clipped;
+        patch.rgb = [0, 1, 2].map(|c| usable.iter().map(|(p, k)| p.rgb[c] * k).sum::<f64>() / count);
+        patch.uncertainty = [0, 1, 2].map(|c| {
+            usable.iter().map(|(p, k)| (p.uncertainty[c] * k).powi(2)).sum::<f64>().sqrt() / count
+        });
+        patch
+    };
+    (0..first.patches.len()).map(one).collect()
+}
+
+/// Light of one set of patches over that of another: the median over patches that both have.
+fn ratio(one: &[MeasuredPatch], other: &[MeasuredPatch]) -> f64 {
+    let usable = |p: &MeasuredPatch| p.excluded.is_none();
+    let mut ratios: Vec<f64> = one
+        .iter()
+        .zip(other)
+        .filter(|(a, b)| usable(a) && usable(b) && b.rgb[1] > 0.0)
+        .map(|(a, b)| a.rgb[1] / b.rgb[1])
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// How far shots of different exposure are from being the same picture scaled: over the patches, the largest departure
+/// of the ratio of green between two shots from its median.
+fn nonlinearity(shots: &[Shot]) -> Option<f64> {
+    let (first, others) = shots.split_first()?;
+    let different = |s: &&Shot| (ratio(&first.patches, &s.patches).log2()).abs() > 0.2;
+    let worst = others.iter().filter(different).map(|shot| {
+        let scale = ratio(&first.patches, &shot.patches);
+        let off = |(a, b): (&MeasuredPatch, &MeasuredPatch)| {
+            let known = a.excluded.is_none() && b.excluded.is_none();
+            if known { (a.rgb[1] / (b.rgb[1] * scale) - 1.0).abs() } else { 0.0 }
+        };
+        first.patches.iter().zip(&shot.patches).map(off).fold(0.0, f64::max)
+    });
+    worst.reduce(f64::max)
+}

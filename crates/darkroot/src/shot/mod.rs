@@ -1,0 +1,252 @@
+//! A shot of a chart: where the chart is, what its patches are, whether the shot is good enough.
+
+mod gates;
+mod view;
+
+use std::path::{Path, PathBuf};
+
+use chart::{Layout, Measurement, Quad, Reference, Slope, glare, measure, windows};
+use colour::white;
+
+pub use gates::{Gate, Verdict, gates};
+pub use view::View;
+
+use crate::calibrate::MeasuredPatch;
+use crate::{Error, Settings};
+
+/// Share of a patch's side that is left out at each edge.
+const INSET: f64 = 0.22;
+/// Chroma below which a reference patch counts as neutral, and luminance above which it does.
+const NEUTRAL_CHROMA: f64 = 5.0;
+
+/// What a person says about a shot.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ShotOptions {
+    /// Corners of the chart by hand: outer corners of the corner patches, in pixels of the developed picture, from
+    /// patch 1 on clockwise as the chart is printed.
+    pub corners: Option<Quad>,
+    /// A shot of an even surface in the same light.
+    pub flat: Option<PathBuf>,
+    /// A shot with the lens closed.
+    pub dark: Option<PathBuf>,
+    /// Take the slope of light over the chart out, as far as the patches show it.
+    pub even_out: bool,
+    /// Take the glare out that the neutral patches show.
+    pub correct_glare: bool,
+    /// Names of patches to leave out.
+    pub exclude: Vec<String>,
+    /// Use shots that fail a gate.
+    pub accept: bool,
+}
+
+/// A measured shot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shot {
+    /// The file.
+    pub path: PathBuf,
+    /// The camera.
+    pub camera: photo::Camera,
+    /// Chart corners in pixels of the developed picture.
+    pub corners: Quad,
+    /// How sure the detection is, 0..=1; 1 for corners by hand.
+    pub confidence: f64,
+    /// Every patch of the layout.
+    pub patches: Vec<MeasuredPatch>,
+    /// The measurements as they were, before corrections.
+    pub measurements: Vec<Measurement>,
+    /// Slope of light over the chart.
+    pub slope: Slope,
+    /// Stray light as a share of white.
+    pub glare: f64,
+    /// What was checked.
+    pub gates: Vec<Gate>,
+    /// What had to be assumed.
+    pub notes: Vec<String>,
+    /// Exposure time in seconds, where the camera tells.
+    pub exposure_seconds: Option<f64>,
+}
+
+/// Opens a shot, finds and measures the chart, and checks the gates.
+///
+/// # Errors
+/// Files that cannot be read, no chart, a reference that does not fit, a gate that fails.
+pub fn open(
+    path: &Path,
+    layout: &Layout,
+    reference: &Reference,
+    options: &ShotOptions,
+    settings: &Settings,
+) -> Result<(Shot, View), Error> {
+    let fault = |what: String| Error::Chart { path: path.to_owned(), what };
+    let view = View::open(path, settings)?;
+    let (corners, confidence) = match options.corners {
+        Some(corners) => (corners, 1.0),
+        None => view.find(layout).map_err(fault)?,
+    };
+    check_inside(&corners, &view).map_err(fault)?;
+    let names: Vec<&str> = layout.patches.iter().map(|p| p.name.as_str()).collect();
+    let colours = reference.for_patches(&names).map_err(|e| fault(format!("the reference {e}")))?;
+    check_chart(layout, &colours).map_err(fault)?;
+
+    let quads = windows::windows(layout, &corners, INSET)
+        .ok_or_else(|| fault("the corners are no quadrilateral; give them clockwise from patch 1".to_owned()))?;
+    let in_frame: Vec<Quad> = quads.iter().map(|q| q.map(|p| view.to_frame(p))).collect();
+    let measurements = measure(&view.frame.light, view.frame.saturation, &in_frame);
+    if let Some(i) = measurements.iter().position(|m| !m.is_complete()) {
+        let what = format!(
+            "patch {} covers too few pixels to be measured; come nearer, or use a longer lens",
+            names[i]
+        );
+        return Err(fault(what));
+    }
+    let mut rgb: Vec<[f64; 3]> = measurements.iter().map(|m| m.mean).collect();
+    if let Some(dark) = &options.dark {
+        let dark = companion(dark, &view, settings)?;
+        let black = measure(&dark.frame.light, dark.frame.saturation, &in_frame);
+        for (rgb, black) in rgb.iter_mut().zip(&black) {
+            *rgb = [0, 1, 2].map(|c| rgb[c] - black.mean[c]);
+        }
+    }
+    let mut notes = Vec::new();
+    if let Some(flat) = &options.flat {
+        let flat = companion(flat, &view, settings)?;
+        let even = measure(&flat.frame.light, flat.frame.saturation, &in_frame);
+        if even.iter().any(|m| m.clipped > 0.01) {
+            return Err(fault("the flat is clipped; take it with less light".to_owned()));
+        }
+        for c in 0..3 {
+            let mean = even.iter().map(|m| m.mean[c]).sum::<f64>() / even.len() as f64;
+            for (rgb, even) in rgb.iter_mut().zip(&even) {
+                rgb[c] *= mean / even.mean[c].max(1e-6);
+            }
+        }
+    }
+
+    let expected: Vec<colour::Xyz> = colours.iter().map(chart::ReferenceColour::xyz_d50).collect();
+    let places = windows::places(layout);
+    let luminance = gates::luminances(&rgb, &expected);
+    let targets: Vec<f64> = expected.iter().map(|c| c.y).collect();
+    let slope = Slope::of(&places, &luminance, &targets).unwrap_or_default();
+    if options.even_out {
+        for (rgb, place) in rgb.iter_mut().zip(&places) {
+            let light = slope.at(*place);
+            *rgb = rgb.map(|v| v / light);
+        }
+        notes.push(format!("a slope of light of {:.1} % over the chart was taken out", 100.0 * slope.range()));
+    }
+    let neutral: Vec<bool> = expected
+        .iter()
+        .map(|c| c.lab(white::D50).chroma() < NEUTRAL_CHROMA)
+        .collect();
+    let green: Vec<f64> = rgb.iter().map(|rgb| rgb[1]).collect();
+    let veil = glare(&green, &expected, &neutral);
+    if options.correct_glare {
+        for c in 0..3 {
+            let channel: Vec<f64> = rgb.iter().map(|rgb| rgb[c]).collect();
+            let share = glare(&channel, &expected, &neutral);
+            // What white has, by the brightest neutral patch.
+            let bright = (0..rgb.len())
+                .filter(|i| neutral[*i])
+                .max_by(|a, b| expected[*a].y.total_cmp(&expected[*b].y));
+            if let Some(i) = bright {
+                let white = channel[i] / (expected[i].y + share);
+                for rgb in &mut rgb {
+                    rgb[c] -= white * share;
+                }
+            }
+        }
+        notes.push(format!("glare of {:.2} % of white was taken out", 100.0 * veil));
+    }
+
+    let patches: Vec<MeasuredPatch> = (0..names.len())
+        .map(|i| {
+            let m = &measurements[i];
+            let mut patch = MeasuredPatch {
+                name: names[i].to_owned(),
+                rgb: rgb[i],
+                uncertainty: m.uncertainty(),
+                clipped: m.clipped,
+                reference: colours[i].clone(),
+                excluded: None,
+            };
+            if patch.is_clipped() {
+                patch.excluded = Some("clipped".to_owned());
+            } else if options.exclude.iter().any(|e| e.eq_ignore_ascii_case(names[i])) {
+                patch.excluded = Some("left out by hand".to_owned());
+            } else if rgb[i].iter().any(|v| *v <= 0.0) {
+                patch.excluded = Some("darker than black".to_owned());
+            }
+            patch
+        })
+        .collect();
+    if let Some(unknown) = options.exclude.iter().find(|e| !names.iter().any(|n| n.eq_ignore_ascii_case(e))) {
+        return Err(fault(format!("the chart has no patch `{unknown}` to exclude")));
+    }
+    let gates = gates(&view, &measurements, &expected, slope, veil, &corners, layout, options);
+    if let Some(failed) = gates.iter().find(|g| g.verdict == Verdict::Refused)
+        && !options.accept
+    {
+        return Err(fault(format!("{}; {} (or add `--accept`)", failed.words, failed.advice)));
+    }
+    let shot = Shot {
+        path: path.to_owned(),
+        camera: view.camera.clone(),
+        corners,
+        confidence,
+        patches,
+        measurements,
+        slope,
+        glare: veil,
+        gates,
+        notes,
+        exposure_seconds: view.exposure_seconds,
+    };
+    Ok((shot, view))
+}
+
+/// A flat or dark frame: it must be of the same camera and size.
+fn companion(path: &Path, of: &View, settings: &Settings) -> Result<View, Error> {
+    let view = View::open(path, settings)?;
+    let fault = |what: String| Err(Error::Chart { path: path.to_owned(), what });
+    if view.camera != of.camera {
+        return fault(format!(
+            "was taken with {} {}, the chart with {} {}; take both with one camera",
+            view.camera.common_make, view.camera.common_model, of.camera.common_make, of.camera.common_model
+        ));
+    }
+    if view.frame.light.size != of.frame.light.size {
+        let (a, b) = (view.frame.light.size, of.frame.light.size);
+        return fault(format!(
+            "has {} x {} pixels, the chart {} x {}; take both at one size",
+            a.width, a.height, b.width, b.height
+        ));
+    }
+    Ok(view)
+}
+
+fn check_inside(corners: &Quad, view: &View) -> Result<(), String> {
+    let inside = |[x, y]: &[f64; 2]| {
+        (-0.5..=view.size.width as f64 - 0.5).contains(x) && (-0.5..=view.size.height as f64 - 0.5).contains(y)
+    };
+    if corners.iter().all(inside) {
+        return Ok(());
+    }
+    Err(format!(
+        "the chart lies partly outside of the picture ({} x {} pixels); take it whole, with some room around it",
+        view.size.width, view.size.height
+    ))
+}
+
+/// Whether reference colours are those of the layout, roughly.
+fn check_chart(layout: &Layout, colours: &[chart::ReferenceColour]) -> Result<(), String> {
+    const MOST: f64 = 15.0;
+    let off = |(patch, colour): (&chart::PatchPlace, &chart::ReferenceColour)| {
+        colour::difference::de2000(colour.xyz_d50().lab(white::D50), patch.lab)
+    };
+    let mean = layout.patches.iter().zip(colours).map(off).sum::<f64>() / colours.len().max(1) as f64;
+    if mean <= MOST {
+        return Ok(());
+    }
+    let fault = chart::reference::ReferenceError::OtherChart { chart: layout.title.clone(), off: mean };
+    Err(format!("of the reference: {fault}"))
+}

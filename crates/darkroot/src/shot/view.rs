@@ -1,0 +1,133 @@
+//! A raw file as something to measure: light of the sensor, and where it stands in the developed picture.
+
+use std::path::Path;
+
+use chart::{Layout as Chart, Quad};
+use develop::Frame;
+use photo::metadata::{Directory, tag};
+use photo::{Camera, Layout, Orientation, Rect, Size};
+
+use crate::{Error, Settings, files};
+
+/// Longest side of the picture in which charts are looked for.
+const LONGEST: usize = 2600;
+
+/// A raw file, decoded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The camera.
+    pub camera: Camera,
+    /// The light of the sensor.
+    pub frame: Frame,
+    /// The developed picture inside of the frame.
+    crop: Rect,
+    orientation: Orientation,
+    /// Size of the developed picture.
+    pub size: Size,
+    /// Exposure time, where the camera tells.
+    pub exposure_seconds: Option<f64>,
+}
+
+impl View {
+    /// Decodes a raw file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or decoded.
+    pub fn open(path: &Path, settings: &Settings) -> Result<Self, Error> {
+        let bytes = files::read(path)?;
+        let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
+            .map_err(|source| Error::Raw { path: path.to_owned(), source })?;
+        if matches!(capture.counts.layout(), Layout::Monochrome) {
+            let what = "is monochrome; a colour profile needs a colour sensor".to_owned();
+            return Err(Error::Chart { path: path.to_owned(), what });
+        }
+        let (active, crop) = (capture.active_area, capture.default_crop);
+        let inner = crop.intersection(active).unwrap_or(active);
+        let crop = Rect { x: inner.x - active.x, y: inner.y - active.y, ..inner };
+        let seconds = capture.metadata.number(Directory::Exif, tag::EXPOSURE_TIME);
+        Ok(Self {
+            frame: develop::frame(&capture),
+            size: capture.orientation.applied_to(crop.size()),
+            camera: capture.camera,
+            crop,
+            orientation: capture.orientation,
+            exposure_seconds: seconds.filter(|s| *s > 0.0),
+        })
+    }
+
+    /// From a place in the developed picture to one in the frame.
+    pub fn to_frame(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (right, bottom) = (self.crop.width as f64 - 1.0, self.crop.height as f64 - 1.0);
+        let [x, y] = match self.orientation {
+            Orientation::Upright => [x, y],
+            Orientation::MirrorHorizontal => [right - x, y],
+            Orientation::Rotate180 => [right - x, bottom - y],
+            Orientation::MirrorVertical => [x, bottom - y],
+            Orientation::Transpose => [y, x],
+            Orientation::Rotate90 => [y, bottom - x],
+            Orientation::Transverse => [right - y, bottom - x],
+            Orientation::Rotate270 => [right - y, x],
+        };
+        [x + self.crop.x as f64, y + self.crop.y as f64]
+    }
+
+    /// The developed picture in linear camera RGB, each pixel the mean of `bin` x `bin` samples: width, height and the
+    /// three planes.
+    pub fn binned(&self, bin: usize) -> (Size, [Vec<f32>; 3]) {
+        let stored = Size { width: self.crop.width / bin, height: self.crop.height / bin };
+        let upright = self.orientation.applied_to(stored);
+        let mut planes = [0, 1, 2].map(|_| vec![0f32; upright.area()]);
+        let light = &self.frame.light;
+        let samples = light.layout.planes();
+        for y in 0..stored.height {
+            for x in 0..stored.width {
+                let (mut sum, mut count) = ([0f32; 3], [0f32; 3]);
+                for row in self.crop.y + y * bin..self.crop.y + (y + 1) * bin {
+                    for column in self.crop.x + x * bin..self.crop.x + (x + 1) * bin {
+                        let first = (row * light.size.width + column) * samples;
+                        let mut take = |c: usize, v: f32| {
+                            sum[c] += v;
+                            count[c] += 1.0;
+                        };
+                        match &light.layout {
+                            Layout::Cfa(cfa) => {
+                                if let Some(c) = cfa.at(column, row).plane() {
+                                    take(c, light.samples[first]);
+                                }
+                            }
+                            Layout::Rgb => (0..3).for_each(|c| take(c, light.samples[first + c])),
+                            Layout::Monochrome => (0..3).for_each(|c| take(c, light.samples[first])),
+                        }
+                    }
+                }
+                let (u, v) = self.orientation.place(x, y, stored);
+                for c in 0..3 {
+                    planes[c][v * upright.width + u] = sum[c] / count[c].max(1.0);
+                }
+            }
+        }
+        (upright, planes)
+    }
+
+    /// Side of the bins in which every channel has samples and the picture is not longer than what detection wants.
+    pub fn bin(&self) -> usize {
+        let least = match &self.frame.light.layout {
+            Layout::Cfa(cfa) if cfa.width() % 3 == 0 => 3,
+            Layout::Cfa(_) => 2,
+            Layout::Rgb | Layout::Monochrome => 1,
+        };
+        let longest = self.size.width.max(self.size.height);
+        (1..=64).map(|k| k * least).find(|bin| longest / bin <= LONGEST).unwrap_or(64)
+    }
+
+    /// Finds a chart: its corners in pixels of the developed picture, and how sure that is. The reason in words where
+    /// there is none.
+    pub(super) fn find(&self, layout: &Chart) -> Result<(Quad, f64), String> {
+        let bin = self.bin();
+        let (size, planes) = self.binned(bin);
+        let found = crate::find_chart::best(size, planes, layout)?;
+        // The middle of a bin of 2 x 2 pixels lies half a pixel beyond its first.
+        let scale = |v: f64| v * bin as f64 + (bin as f64 - 1.0) / 2.0;
+        Ok((found.0.map(|[x, y]| [scale(x), scale(y)]), found.1))
+    }
+}
