@@ -21,13 +21,17 @@ pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec
     let unusable = |what: String| Error::Neutral { path: raw_file.to_owned(), what };
     if !store::is_for(profile, &capture.camera) {
         let (camera, of) = (capture.camera.name(), profile.camera().name());
-        return Err(unusable(format!("it was taken with {camera}, not with {of}; name a raw file of that camera")));
+        return Err(unusable(format!(
+            "it was taken with {camera}, not with {of}; name a raw file of that camera"
+        )));
     }
     let matrix = CameraMatrix::of(&capture);
     let neutral = |white: &Xy| matrix.as_ref().and_then(|m| m.neutral_of(*white));
     let all: Option<Vec<[f64; 3]>> = whites.iter().map(neutral).collect();
     all.ok_or_else(|| {
-        unusable("no color matrix of its camera is known; give the neutrals yourself with `--neutral`".to_owned())
+        unusable(
+            "no color matrix of its camera is known; give the neutrals yourself with `--neutral`".to_owned(),
+        )
     })
 }
 

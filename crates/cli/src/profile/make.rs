@@ -51,6 +51,10 @@ pub(crate) struct ShotArgs {
     /// Use the shot even if it is not good enough
     #[arg(long)]
     accept: bool,
+
+    /// Take rendered pictures (JPEG, PNG, TIFF) too
+    #[arg(long)]
+    allow_rendered: bool,
 }
 
 impl ShotArgs {
@@ -63,6 +67,7 @@ impl ShotArgs {
             correct_glare: self.correct_glare,
             exclude: self.exclude.clone(),
             accept: self.accept,
+            allow_rendered: self.allow_rendered,
         }
     }
 

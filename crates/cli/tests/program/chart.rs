@@ -174,7 +174,7 @@ fn what_does_not_fit_is_named() {
         (with(&["--model", "polynomial-3"]), 2, vec!["--force"]),
         (vec!["profile", "chart.dng", "-o", "p.toml"], 2, vec!["--light"]),
         (vec!["profile"], 2, vec!["shot of a chart"]),
-        (vec!["profile", "picture.jpg", "--light", "D50", "--corners", &corners, "-o", "p.toml"], 1, vec!["picture.jpg"]),
+        (vec!["profile", "picture.jpg", "--light", "D50", "--corners", &corners, "-o", "p.toml"], 1, vec!["picture.jpg", "rendered", "--allow-rendered"]),
         (
             vec!["profile", "chart.dng", "--light", "D50", "--corners", "0,0,900,0,900,300,0,300", "-o", "p.toml"],
             1,
@@ -188,6 +188,20 @@ fn what_does_not_fit_is_named() {
         }
     }
     assert!(!desk.names().contains(&"p.toml".to_owned()));
+}
+
+#[test]
+fn a_rendered_picture_is_taken_only_when_asked_and_loudly() {
+    let desk = desk(&daylight());
+    desk.develop(&["chart.dng", "-o", "chart.png"]);
+    let corners = corners();
+    let own: &[&str] = &["profile", "chart.png", "--light", "D50", "--corners", &corners, "-o", "p.toml"];
+    assert_eq!(desk.run(own).code, 1);
+    let run = desk.run(&[own, &["--allow-rendered", "--accept"]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.err.contains("WARNING"), "{}", run.err);
+    // It does not pass for a profile of the camera.
+    desk.fails(1, &["develop", "chart.dng", "--profile", "p.toml", "-o", "x.png"], &["rendered picture"]);
 }
 
 #[test]

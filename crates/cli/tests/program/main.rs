@@ -5,6 +5,7 @@
 mod broken;
 mod chart;
 mod engines;
+mod export;
 mod formats;
 mod help;
 mod inspect;

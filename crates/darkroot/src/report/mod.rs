@@ -55,7 +55,7 @@ fn section(page: &mut String, light: &MadeLight, layout: &Layout) {
     gates(page, light);
     page.push_str("</div>");
     page.push_str("<h3>Patches: as measured | as reference | as corrected</h3>");
-    page.push_str(&swatches(patches, layout, light.calibrated.white_rgb));
+    page.push_str(&swatches(patches, layout));
     models(page, &light.calibrated);
     exposures(page, &light.calibrated);
     page.push_str("<div class=\"columns\">");
@@ -114,16 +114,15 @@ fn gates(page: &mut String, light: &MadeLight) {
 }
 
 /// Every patch in the chart's own grid.
-fn swatches(patches: &[Judged], layout: &Layout, white_rgb: [f64; 3]) -> String {
+fn swatches(patches: &[Judged], layout: &Layout) -> String {
     const SIDE: usize = 84;
-    let _ = white_rgb;
     let mut svg = format!(
         "<svg class=\"swatches\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"patches\">",
         layout.columns * SIDE,
-        layout.rows * (SIDE + 26)
+        layout.rows * (SIDE + 6)
     );
     for (i, patch) in patches.iter().enumerate() {
-        let (x, y) = ((i % layout.columns) * SIDE, (i / layout.columns) * (SIDE + 26));
+        let (x, y) = ((i % layout.columns) * SIDE, (i / layout.columns) * (SIDE + 6));
         // As measured: balanced camera RGB taken for linear sRGB.
         let measured = coded(patch.rgb);
         let third = (SIDE - 4) / 3;
@@ -143,8 +142,8 @@ fn swatches(patches: &[Judged], layout: &Layout, white_rgb: [f64; 3]) -> String 
         let _ = write!(
             svg,
             "<text class=\"{class}\" x=\"{x}\" y=\"{}\">{text}</text><text class=\"name\" x=\"{x}\" y=\"{}\">{}</text>",
-            y + SIDE - 6,
-            y + SIDE + 8,
+            y + SIDE - 12,
+            y + SIDE - 3,
             escape(&patch.name)
         );
     }

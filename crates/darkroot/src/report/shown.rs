@@ -22,8 +22,8 @@ pub(super) fn picture(view: &View, calibrated: &Calibrated, layout: &Layout, cor
     let jpeg = jpeg(view, calibrated, bin);
     let Size { width, height } = view.size;
     format!(
-        "<figure class=\"picture\"><img alt=\"the shot\" src=\"data:image/jpeg;base64,{}\">{}<figcaption>The shot through \
-         the profile, with the chart as it was found.</figcaption></figure>",
+        "<figure class=\"picture\"><div class=\"frame\"><img alt=\"the shot\" src=\"data:image/jpeg;base64,{}\">{}</div>\
+         <figcaption>The shot through the profile, with the chart as it was found.</figcaption></figure>",
         base64(&jpeg),
         overlay(layout, corners, Size { width, height })
     )

@@ -1,6 +1,7 @@
 //! A shot of a chart: where the chart is, what its patches are, whether the shot is good enough.
 
 mod gates;
+mod rendered;
 mod view;
 
 use std::path::{Path, PathBuf};
@@ -37,6 +38,8 @@ pub struct ShotOptions {
     pub exclude: Vec<String>,
     /// Use shots that fail a gate.
     pub accept: bool,
+    /// Take rendered pictures (JPEG, PNG, TIFF) too.
+    pub allow_rendered: bool,
 }
 
 /// A measured shot.
@@ -78,7 +81,7 @@ pub fn open(
     settings: &Settings,
 ) -> Result<(Shot, View), Error> {
     let fault = |what: String| Error::Chart { path: path.to_owned(), what };
-    let view = View::open(path, settings)?;
+    let view = if options.allow_rendered { View::open_any(path, settings)? } else { View::open(path, settings)? };
     let (corners, confidence) = match options.corners {
         Some(corners) => (corners, 1.0),
         None => view.find(layout).map_err(fault)?,
@@ -108,6 +111,13 @@ pub fn open(
         }
     }
     let mut notes = Vec::new();
+    if rendered::is_rendered(path) {
+        notes.push(
+            "WARNING: made from a rendered picture: the profile serves pictures rendered in just this way, and no raw \
+             file"
+                .to_owned(),
+        );
+    }
     if let Some(flat) = &options.flat {
         let flat = companion(flat, &view, settings)?;
         let even = measure(&flat.frame.light, flat.frame.saturation, &in_frame);

@@ -7,6 +7,7 @@ use develop::Frame;
 use photo::metadata::{Directory, tag};
 use photo::{Camera, Layout, Orientation, Rect, Size};
 
+use super::rendered;
 use crate::{Error, Settings, files};
 
 /// Longest side of the picture in which charts are looked for.
@@ -34,6 +35,11 @@ impl View {
     /// # Errors
     /// A file that cannot be read or decoded.
     pub fn open(path: &Path, settings: &Settings) -> Result<Self, Error> {
+        if rendered::is_rendered(path) {
+            let what = "is a rendered picture, not a raw file: a tone curve has changed its colours; take the raw file, \
+                        or add `--allow-rendered` for a profile that serves this rendering only";
+            return Err(Error::Chart { path: path.to_owned(), what: what.to_owned() });
+        }
         let bytes = files::read(path)?;
         let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
             .map_err(|source| Error::Raw { path: path.to_owned(), source })?;
@@ -52,6 +58,32 @@ impl View {
             crop,
             orientation: capture.orientation,
             exposure_seconds: seconds.filter(|s| *s > 0.0),
+        })
+    }
+
+    /// Any file: a raw file, or a picture that was rendered.
+    ///
+    /// # Errors
+    /// A file that cannot be read or decoded.
+    pub fn open_any(path: &Path, settings: &Settings) -> Result<Self, Error> {
+        if !rendered::is_rendered(path) {
+            return Self::open(path, settings);
+        }
+        let light = rendered::read(path)?;
+        let size = light.size;
+        let name = |s: &str| s.to_owned();
+        Ok(Self {
+            camera: Camera {
+                make: name("rendered"),
+                model: name("picture"),
+                common_make: name("rendered"),
+                common_model: name("picture"),
+            },
+            frame: Frame { light, saturation: [1.0; 3] },
+            crop: Rect::full(size),
+            orientation: Orientation::Upright,
+            size,
+            exposure_seconds: None,
         })
     }
 
