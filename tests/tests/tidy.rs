@@ -25,7 +25,7 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("darkroot", &["chart", "colour", "develop", "encode", "photo", "profile", "raw"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
     ("cli", &["colour", "darkroot", "develop", "profile", "raw"]),
-    ("tests", &["colour", "darkroot", "develop", "photo", "profile", "simulate"]),
+    ("tests", &["chart", "colour", "darkroot", "develop", "photo", "profile", "simulate"]),
 ];
 
 /// Crates that must stay pure: no files, no clock, no environment (architecture, invariant 7).

@@ -3,6 +3,7 @@
 //! Data goes to stdout, words to stderr. Exit codes: 0 all done, 1 some file failed, 2 wrong usage, 3
 //! what was judged is not good enough, 130 interrupted.
 
+mod chart;
 mod develop;
 mod evaluate;
 mod inspect;
@@ -49,6 +50,7 @@ enum Command {
     Inspect(inspect::Inspect),
     Profile(profile::Profile),
     Verify(verify::Verify),
+    Chart(chart::Chart),
     Evaluate(evaluate::Evaluate),
     Completions(shell::Completions),
     Man(shell::Man),
@@ -81,6 +83,7 @@ fn main() -> ExitCode {
         Command::Inspect(command) => command.run(),
         Command::Profile(command) => command.run(cli.common),
         Command::Verify(command) => command.run(cli.common),
+        Command::Chart(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),

@@ -18,6 +18,11 @@ pub struct NamedReference {
     pub sha256: String,
 }
 
+/// Every chart that is built in.
+pub fn layouts() -> Vec<Layout> {
+    Layout::builtin()
+}
+
 /// The layout of a chart: one that is built in, or a file that describes one (TOML or Argyll's `.cht`).
 ///
 /// # Errors

@@ -39,6 +39,14 @@ pub enum Error {
         /// What is wrong with it.
         source: profile::Error,
     },
+    /// The DCP is unusable as a profile.
+    #[error("{path}: {source}", path = path.display())]
+    Dcp {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: profile::export::Error,
+    },
     /// A file of spectra is unusable.
     #[error("{path}: {what}", path = path.display())]
     Spectra {

@@ -53,7 +53,8 @@ pub use error::Error;
 
 pub mod charts;
 
-mod find_chart;
+pub mod find_chart;
+pub use find_chart::{FoundCharts, find_charts};
 
 pub mod shot;
 pub use shot::{Shot, ShotOptions};

@@ -98,12 +98,20 @@ pub(crate) fn is_for(profile: &Profile, camera: &Camera) -> bool {
     of.is(&camera.common_make, &camera.common_model) || of.is(&camera.make, &camera.model)
 }
 
-/// Reads one profile file.
+/// Reads one profile file: Darkroot's own, or a DCP, of which the summary says what was taken.
 ///
 /// # Errors
 /// A file that cannot be read or is no usable profile.
 pub fn read(path: &Path) -> Result<Profile, Error> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::read(path, &e))?;
+    let bytes = crate::files::read(path)?;
+    if profile::export::dcp::is_dcp(&bytes) {
+        let imported = profile::export::dcp::import(&bytes);
+        return imported.map(|i| i.profile).map_err(|source| Error::Dcp { path: path.to_owned(), source });
+    }
+    let text = String::from_utf8(bytes).map_err(|_| {
+        let source = profile::Error::Syntax { detail: "it is no text".to_owned() };
+        Error::Profile { path: path.to_owned(), source }
+    })?;
     profile::file::parse(&text).map_err(|source| Error::Profile { path: path.to_owned(), source })
 }
 

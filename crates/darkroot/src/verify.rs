@@ -302,6 +302,7 @@ mod tests {
                     common_model: String::new(),
                 },
                 corners: [[0.0; 2]; 4],
+                windows: Vec::new(),
                 confidence: 1.0,
                 patches: Vec::new(),
                 measurements: Vec::new(),

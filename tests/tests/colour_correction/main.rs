@@ -7,3 +7,4 @@ mod published_tables;
 mod shipped;
 mod spectral_prior;
 mod twenty_four;
+mod chart_shots;

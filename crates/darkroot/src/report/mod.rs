@@ -50,7 +50,7 @@ fn section(page: &mut String, light: &MadeLight, layout: &Layout) {
     headline(page, light);
     page.push_str("<div class=\"columns\">");
     for shot in light.shots.iter().take(1) {
-        page.push_str(&shown::picture(&light.view, &light.calibrated, layout, &shot.corners));
+        page.push_str(&shown::picture(&light.view, &light.calibrated, shot));
     }
     gates(page, light);
     page.push_str("</div>");

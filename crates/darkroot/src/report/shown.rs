@@ -3,19 +3,19 @@
 use std::fmt::Write as _;
 use std::io::Cursor;
 
-use chart::{Layout, Quad, windows};
+use chart::Quad;
 use colour::{RgbSpace, Vector3, white};
 use photo::metadata::Metadata;
 use photo::{Picture, PictureSpace, Samples, Size};
 
 use crate::calibrate::Calibrated;
-use crate::shot::View;
+use crate::shot::{Shot, View};
 
 /// Longest side of the picture.
 const LONGEST: usize = 1000;
 
 /// The picture in the profile's own colours, with grid, windows and numbers over it.
-pub(super) fn picture(view: &View, calibrated: &Calibrated, layout: &Layout, corners: &Quad) -> String {
+pub(super) fn picture(view: &View, calibrated: &Calibrated, shot: &Shot) -> String {
     let least = view.bin();
     let longest = view.size.width.max(view.size.height);
     let bin = (1..).map(|k| k * least).find(|bin| longest / bin <= LONGEST).unwrap_or(least);
@@ -25,12 +25,12 @@ pub(super) fn picture(view: &View, calibrated: &Calibrated, layout: &Layout, cor
         "<figure class=\"picture\"><div class=\"frame\"><img alt=\"the shot\" src=\"data:image/jpeg;base64,{}\">{}</div>\
          <figcaption>The shot through the profile, with the chart as it was found.</figcaption></figure>",
         base64(&jpeg),
-        overlay(layout, corners, Size { width, height })
+        overlay(shot, Size { width, height })
     )
 }
 
 /// Grid, windows and numbers as SVG in pixels of the developed picture.
-pub(super) fn overlay(layout: &Layout, corners: &Quad, size: Size) -> String {
+fn overlay(shot: &Shot, size: Size) -> String {
     let mut svg = format!(
         "<svg viewBox=\"-0.5 -0.5 {} {}\" preserveAspectRatio=\"none\" fill=\"none\">",
         size.width, size.height
@@ -39,8 +39,8 @@ pub(super) fn overlay(layout: &Layout, corners: &Quad, size: Size) -> String {
         quad.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")
     };
     let stroke = size.width as f64 / 400.0;
-    let _ = write!(svg, "<polygon points=\"{}\" stroke=\"#ff0\" stroke-width=\"{stroke}\"/>", points(corners));
-    for (i, window) in windows::windows(layout, corners, 0.22).unwrap_or_default().iter().enumerate() {
+    let _ = write!(svg, "<polygon points=\"{}\" stroke=\"#ff0\" stroke-width=\"{stroke}\"/>", points(&shot.corners));
+    for (i, window) in shot.windows.iter().enumerate() {
         let [x, y] = [0, 1].map(|k| window.iter().map(|p| p[k]).sum::<f64>() / 4.0);
         let font = (window[1][0] - window[0][0]).hypot(window[1][1] - window[0][1]) * 0.45;
         let _ = write!(

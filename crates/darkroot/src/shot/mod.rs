@@ -6,17 +6,16 @@ mod view;
 
 use std::path::{Path, PathBuf};
 
-use chart::{Layout, Measurement, Quad, Reference, Slope, glare, measure, windows};
+use chart::{Layout, Measurement, Quad, Reference, Slope, glare, measure};
 use colour::white;
 
 pub use gates::{Gate, Verdict, gates};
 pub use view::View;
 
 use crate::calibrate::MeasuredPatch;
+use crate::find_chart::{self, Place};
 use crate::{Error, Settings};
 
-/// Share of a patch's side that is left out at each edge.
-const INSET: f64 = 0.22;
 /// Chroma below which a reference patch counts as neutral, and luminance above which it does.
 const NEUTRAL_CHROMA: f64 = 5.0;
 
@@ -51,6 +50,8 @@ pub struct Shot {
     pub camera: photo::Camera,
     /// Chart corners in pixels of the developed picture.
     pub corners: Quad,
+    /// The part of each patch that was measured.
+    pub windows: Vec<Quad>,
     /// How sure the detection is, 0..=1; 1 for corners by hand.
     pub confidence: f64,
     /// Every patch of the layout.
@@ -82,18 +83,17 @@ pub fn open(
 ) -> Result<(Shot, View), Error> {
     let fault = |what: String| Error::Chart { path: path.to_owned(), what };
     let view = if options.allow_rendered { View::open_any(path, settings)? } else { View::open(path, settings)? };
-    let (corners, confidence) = match options.corners {
-        Some(corners) => (corners, 1.0),
-        None => view.find(layout).map_err(fault)?,
+    let found = match &options.corners {
+        Some(corners) => find_chart::by_hand(layout, corners),
+        None => find_chart::best(&view, layout),
     };
+    let Place { corners, windows, confidence } = found.map_err(fault)?;
     check_inside(&corners, &view).map_err(fault)?;
     let names: Vec<&str> = layout.patches.iter().map(|p| p.name.as_str()).collect();
     let colours = reference.for_patches(&names).map_err(|e| fault(format!("the reference {e}")))?;
     check_chart(layout, &colours).map_err(fault)?;
 
-    let quads = windows::windows(layout, &corners, INSET)
-        .ok_or_else(|| fault("the corners are no quadrilateral; give them clockwise from patch 1".to_owned()))?;
-    let in_frame: Vec<Quad> = quads.iter().map(|q| q.map(|p| view.to_frame(p))).collect();
+    let in_frame: Vec<Quad> = windows.iter().map(|q| q.map(|p| view.to_frame(p))).collect();
     let measurements = measure(&view.frame.light, view.frame.saturation, &in_frame);
     if let Some(i) = measurements.iter().position(|m| !m.is_complete()) {
         let what = format!(
@@ -133,7 +133,7 @@ pub fn open(
     }
 
     let expected: Vec<colour::Xyz> = colours.iter().map(chart::ReferenceColour::xyz_d50).collect();
-    let places = windows::places(layout);
+    let places = chart::windows::places(layout);
     let luminance = gates::luminances(&rgb, &expected);
     let targets: Vec<f64> = expected.iter().map(|c| c.y).collect();
     let slope = Slope::of(&places, &luminance, &targets).unwrap_or_default();
@@ -202,6 +202,7 @@ pub fn open(
         path: path.to_owned(),
         camera: view.camera.clone(),
         corners,
+        windows,
         confidence,
         patches,
         measurements,

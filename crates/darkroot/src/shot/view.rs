@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use chart::{Layout as Chart, Quad};
 use develop::Frame;
 use photo::metadata::{Directory, tag};
 use photo::{Camera, Layout, Orientation, Rect, Size};
@@ -150,16 +149,5 @@ impl View {
         };
         let longest = self.size.width.max(self.size.height);
         (1..=64).map(|k| k * least).find(|bin| longest / bin <= LONGEST).unwrap_or(64)
-    }
-
-    /// Finds a chart: its corners in pixels of the developed picture, and how sure that is. The reason in words where
-    /// there is none.
-    pub(super) fn find(&self, layout: &Chart) -> Result<(Quad, f64), String> {
-        let bin = self.bin();
-        let (size, planes) = self.binned(bin);
-        let found = crate::find_chart::best(size, planes, layout)?;
-        // The middle of a bin of 2 x 2 pixels lies half a pixel beyond its first.
-        let scale = |v: f64| v * bin as f64 + (bin as f64 - 1.0) / 2.0;
-        Ok((found.0.map(|[x, y]| [scale(x), scale(y)]), found.1))
     }
 }

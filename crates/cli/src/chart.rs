@@ -1,0 +1,108 @@
+//! `darkroot chart`.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use clap::Args;
+use darkroot::find_chart::preview;
+use darkroot::{Settings, charts, find_charts};
+use serde_json::json;
+
+use crate::Outcome;
+
+/// Find colour charts in raw files and pictures: corners, which chart, which way round
+#[derive(Debug, Args)]
+pub(crate) struct Chart {
+    /// Raw files, or JPEG, PNG and TIFF pictures
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+
+    /// Look for this chart only: classic24, passport24, mini24, nano24, sg140, dc240, spyder24, spyder48, or a file that
+    /// describes one; several may be given
+    #[arg(long = "chart", value_name = "CHART")]
+    charts: Vec<String>,
+
+    /// One line of JSON for each file
+    #[arg(long)]
+    json: bool,
+
+    /// Write a PNG of the one FILE with grid, patches and numbers over it
+    #[arg(long, value_name = "OUT.png")]
+    preview: Option<PathBuf>,
+
+    /// Replace an existing preview
+    #[arg(long, requires = "preview")]
+    overwrite: bool,
+}
+
+impl Chart {
+    pub(crate) fn run(self) -> Result<Outcome> {
+        if self.preview.is_some() && self.files.len() > 1 {
+            bail!("`--preview` shows one file; name one");
+        }
+        let layouts = if self.charts.is_empty() {
+            charts::layouts()
+        } else {
+            self.charts.iter().map(|c| charts::layout(c)).collect::<Result<_, _>>()?
+        };
+        let settings = Settings::default();
+        let mut out = std::io::stdout().lock();
+        let mut outcome = Outcome::Done;
+        for file in &self.files {
+            let found = match find_charts(file, &layouts, &settings) {
+                Ok(found) => found,
+                Err(fault) => {
+                    crate::say(format_args!("error: {fault}"));
+                    outcome = Outcome::SomeFailed;
+                    continue;
+                }
+            };
+            if let Some(output) = &self.preview {
+                preview(file, &found, output, self.overwrite, &settings)?;
+            }
+            let reason = found.search.rejected.as_ref().map(|r| r.reason.clone());
+            if self.json {
+                let charts: Vec<_> = found
+                    .search
+                    .found
+                    .iter()
+                    .map(|c| json!({
+                        "chart": c.layout,
+                        "corners": c.corners,
+                        "confidence": c.confidence,
+                        "rotation": c.rotation_degrees,
+                        "patch_pixels": c.patch_pixels,
+                        "gap": c.gap,
+                    }))
+                    .collect();
+                let line = json!({
+                    "file": file.display().to_string(),
+                    "size": [found.size.width, found.size.height],
+                    "charts": charts,
+                    "refused": reason,
+                });
+                writeln!(out, "{line}")?;
+                continue;
+            }
+            for c in &found.search.found {
+                let corners: Vec<String> = c.corners.iter().flatten().map(|v| format!("{v:.1}")).collect();
+                writeln!(
+                    out,
+                    "{}: {} turned by {:.0} degrees, confidence {:.2}, patches of {:.0} pixels, corners {}",
+                    file.display(),
+                    c.layout,
+                    c.rotation_degrees,
+                    c.confidence,
+                    c.patch_pixels,
+                    corners.join(",")
+                )?;
+            }
+            if found.search.found.is_empty() {
+                let reason = reason.map_or_else(String::new, |r| format!(": {r}"));
+                writeln!(out, "{}: no chart{reason}", file.display())?;
+            }
+        }
+        Ok(outcome)
+    }
+}

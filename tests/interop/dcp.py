@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""RawTherapee with an exported DCP gives Darkroot's colours: dcp.py DARKROOT
+
+A raw file of the chart's patches is made, developed by rawtherapee-cli with the DCP alone (no tone curve, no look),
+and its patches, scaled to the same mean luminance, are compared with `darkroot profile apply`.
+
+Needs rawtherapee-cli (Debian: rawtherapee), transicc (Debian: liblcms2-utils) and numpy; says which is missing. Exit
+code 1 when a mean is above 1 dE2000.
+"""
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import chart
+import numpy as np
+
+OUTPUT = Path("/usr/share/rawtherapee/iccprofiles/output/RTv4_Large.icc")
+SIDE = 64  # pixels of a patch
+NEUTRAL = {"D65": [0.47, 1.0, 0.68], "A": [0.75, 1.0, 0.35]}
+RECIPE = """[Version]
+AppVersion=5.9
+Version=349
+[Exposure]
+Auto=false
+HistogramMatching=false
+[HLRecovery]
+Enabled=false
+[White Balance]
+Enabled=true
+Setting=Camera
+[Color Management]
+InputProfile=file:{dcp}
+ToneCurve=false
+ApplyLookTable=false
+ApplyBaselineExposureOffset=false
+ApplyHueSatMap={table}
+DCPIlluminant=0
+WorkingProfile=ProPhoto
+OutputProfile=RTv4_Large
+OutputProfileIntent=Relative
+OutputBPC=false
+[RAW]
+CA=false
+HotPixelFilter=false
+DeadPixelFilter=false
+[RAW Bayer]
+Method=fast
+"""
+
+
+def tiff(fields, magic, pieces=b""):
+    """A TIFF-like file of one directory: tag -> (type, values); tag 273 points at the picture."""
+    codes = {1: "B", 2: "s", 3: "H", 4: "I", 5: "II", 10: "ii", 11: "f"}
+    start = 8 + 2 + 12 * len(fields) + 4
+    head, values = struct.pack("<2sHIH", b"II", magic, 8, len(fields)), b""
+    sizes = {tag: 4 for tag in [273]}
+    packed = {}
+    for tag, (kind, content) in fields.items():
+        if kind == 2:
+            packed[tag] = (len(content) + 1, content.encode() + b"\0")
+        elif kind in (5, 10):
+            packed[tag] = (len(content), b"".join(struct.pack("<" + codes[kind], round(v * 10**6), 10**6) for v in content))
+        else:
+            packed[tag] = (len(content), struct.pack(f"<{len(content)}{codes[kind]}", *content))
+    total = start + sum(len(b) + len(b) % 2 for _, b in packed.values() if len(b) > 4)
+    for tag in sorted(fields):
+        count, content = packed[tag]
+        if tag in sizes:
+            content = struct.pack("<I", total)
+        head += struct.pack("<HHI", tag, fields[tag][0], count)
+        if len(content) <= 4:
+            head += content.ljust(4, b"\0")
+        else:
+            head += struct.pack("<I", start + len(values))
+            values += content + b"\0" * (len(content) % 2)
+    return head + b"\0" * 4 + values + pieces
+
+
+def read_tiff(content):
+    """Tags of the first directory of a TIFF or DCP, little-endian."""
+    (at,) = struct.unpack_from("<I", content, 4)
+    (count,) = struct.unpack_from("<H", content, at)
+    fields = {}
+    for i in range(count):
+        tag, kind, n = struct.unpack_from("<HHI", content, at + 2 + 12 * i)
+        code, size = {3: ("H", 2), 4: ("I", 4), 10: ("i", 8), 11: ("f", 4)}.get(kind, ("B", 1))
+        place = at + 10 + 12 * i
+        if n * size > 4:
+            (place,) = struct.unpack_from("<I", content, place)
+        fields[tag] = struct.unpack_from(f"<{n * size // struct.calcsize(code)}{code}", content, place)
+    return fields
+
+
+def dng(camera, rgb, neutral, color_matrix):
+    """A mosaic of patches, six in a row, with unbalanced camera RGB."""
+    patches = (np.clip(rgb * neutral, 0, 1) * 65535).round().astype("<u2").reshape(4, 6, 3)
+    pixels = patches.repeat(SIDE, 0).repeat(SIDE, 1)
+    mosaic = pixels[..., 1].copy()
+    mosaic[::2, ::2], mosaic[1::2, 1::2] = pixels[::2, ::2, 0], pixels[1::2, 1::2, 2]
+    height, width = mosaic.shape
+    make, model = camera.split(" ", 1)
+    fields = {
+        254: (4, [0]), 256: (4, [width]), 257: (4, [height]), 258: (3, [16]), 259: (3, [1]), 262: (3, [32803]),
+        271: (2, make), 272: (2, model), 273: (4, [0]), 274: (3, [1]), 277: (3, [1]), 278: (4, [height]),
+        279: (4, [mosaic.nbytes]), 284: (3, [1]), 33421: (3, [2, 2]), 33422: (1, [0, 1, 1, 2]),
+        50706: (1, [1, 4, 0, 0]), 50707: (1, [1, 1, 0, 0]), 50708: (2, camera), 50714: (4, [0]), 50717: (4, [65535]),
+        50721: (10, color_matrix), 50728: (5, neutral), 50778: (3, [21]),
+    }
+    return tiff(fields, 42, mosaic.tobytes())
+
+
+def developed(path):
+    """Mean of the middle of each patch, as XYZ relative to D50."""
+    content = path.read_bytes()
+    fields = read_tiff(content)
+    width, height, rows = fields[256][0], fields[257][0], fields[278][0]
+    strips = b"".join(content[o : o + n] for o, n in zip(fields[273], fields[279]))
+    picture = np.frombuffer(strips, "<u2").reshape(height, width, 3) / 65535
+    y, x = (height - 4 * SIDE) // 2, (width - 6 * SIDE) // 2
+    picture = picture[max(y, 0) :, max(x, 0) :]
+    quarter = SIDE // 4
+    middle = [
+        picture[r * SIDE + quarter : (r + 1) * SIDE - quarter, c * SIDE + quarter : (c + 1) * SIDE - quarter].mean((0, 1))
+        for r in range(4)
+        for c in range(6)
+    ]
+    lines = "".join(f"{r:.9g} {g:.9g} {b:.9g}\n" for r, g, b in 255 * np.array(middle))
+    command = ["transicc", "-n", "-c0", "-t1", "-i", str(OUTPUT), "-o", "*XYZ"]
+    out = subprocess.run(command, input=lines, capture_output=True, text=True, check=True).stdout
+    return np.array([[float(v) for v in line.split()] for line in out.split("\n") if line.strip()]) / 100
+
+
+if __name__ == "__main__":
+    chart.need("rawtherapee-cli", "rawtherapee")
+    chart.need("transicc", "liblcms2-utils")
+    program, good = sys.argv[1], True
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for camera in chart.CAMERAS:
+            for light in ["D65", "A"]:
+                neutral = np.array(NEUTRAL[light])
+                words = ",".join(str(v) for v in neutral)
+                profile = ["profile", "export", camera, "--light", light, "--to", "dcp", "--neutral", words]
+                chart.darkroot(program, *profile, "-o", str(folder / "camera.dcp"), "--overwrite")
+                matrix = np.array(read_tiff((folder / "camera.dcp").read_bytes())[50721]).reshape(9, 2)
+                rgb = chart.chart_rgb(program, camera, light)
+                wanted = chart.apply(program, camera, light, rgb)
+                (folder / "chart.dng").write_bytes(dng(camera, rgb, neutral, list(matrix[:, 0] / matrix[:, 1])))
+                for table in ["true", "false"]:
+                    recipe = folder / "chart.pp3"
+                    recipe.write_text(RECIPE.format(dcp=folder / "camera.dcp", table=table))
+                    out = folder / "chart.tif"
+                    command = ["rawtherapee-cli", "-Y", "-o", out, "-p", recipe, "-t", "-b16", "-c", folder / "chart.dng"]
+                    subprocess.run(command, check=True, capture_output=True)
+                    found = developed(out)
+                    found *= wanted[:, 1].mean() / found[:, 1].mean()
+                    if table == "true":
+                        good &= chart.judge(f"{camera}, {light}, RawTherapee", found, wanted)
+                    else:
+                        chart.judge(f"{camera}, {light}, RawTherapee by the matrix alone", found, wanted)
+    sys.exit(0 if good else 1)
