@@ -16,6 +16,7 @@ use simulate::{Camera, Exposure, Scene, dng, expose::expose};
 use super::data;
 use super::held_out::unseen;
 
+/// Size and corners for charts of few patches; those of many are twice as large.
 const SIZE: Size = Size { width: 608, height: 408 };
 const CORNERS: [[f64; 2]; 4] = [[70.0, 60.0], [530.0, 84.0], [512.0, 352.0], [84.0, 340.0]];
 
@@ -56,7 +57,10 @@ fn shot(camera: &str, light_name: &str, layout: &str, patches: &[Spectrum]) -> (
         ..Exposure::default()
     };
     let layout = darkroot::charts::layout(layout).unwrap();
-    let scene = Scene::chart(SIZE, CORNERS, patches, layout.columns, layout.gap);
+    let scale = if patches.len() > 50 { 2 } else { 1 };
+    let size = Size { width: SIZE.width * scale, height: SIZE.height * scale };
+    let corners = CORNERS.map(|p| p.map(|v| v * scale as f64));
+    let scene = Scene::chart(size, corners, patches, layout.columns, layout.gap);
     let folder = std::env::temp_dir().join(format!("darkroot-{}-{camera}-{light_name}-{}", std::process::id(), layout.name));
     std::fs::create_dir_all(&folder).unwrap();
     let write = |name: &str, scene: &Scene| {
@@ -65,7 +69,7 @@ fn shot(camera: &str, light_name: &str, layout: &str, patches: &[Spectrum]) -> (
         path
     };
     let file = write("chart.dng", &scene);
-    let flat = write("flat.dng", &Scene::flat(SIZE, Spectrum::constant(0.5)));
+    let flat = write("flat.dng", &Scene::flat(size, Spectrum::constant(0.5)));
     let nm: Vec<f64> = (0..81).map(Spectrum::wavelength).collect();
     let colours = layout.patches.iter().zip(patches).map(|(place, s)| {
         (place.name.clone(), ReferenceColour::Reflectance(Measured::new(&nm, &s.0).unwrap()))
@@ -99,7 +103,7 @@ fn a_shot_makes_a_profile_nearly_as_good_as_true_values() {
         return;
     }
     let classic = data::classic_24();
-    let sg = data::reflectances("refl_iset_gretagdigitalcolorsg");
+    let sg = data::sg_140();
     let mut worst: f64 = 0.0;
     let mut sum = (0.0, 0.0);
     for camera in ["camspec_nikon_d90", "camspec_canon_40d", "camspec_pentax_k5"] {

@@ -64,3 +64,11 @@ pub(super) fn dc_180() -> Vec<Spectrum> {
 pub(super) fn sfu_1995() -> Vec<Spectrum> {
     reflectances("sfu1995_380-780_4")
 }
+
+/// All 140 patches of the Digital SG, row by row.
+pub(super) fn sg_140() -> Vec<Spectrum> {
+    let names: Vec<String> =
+        (1..=10).flat_map(|row| ('A'..='N').map(move |column| format!("{column}{row}"))).collect();
+    let file = spectra::read(&file("colorchecker_sg_all_380-730_1")).unwrap();
+    file.only(&names).unwrap().reflectances()
+}
