@@ -67,14 +67,16 @@ impl Chart {
                     .search
                     .found
                     .iter()
-                    .map(|c| json!({
-                        "chart": c.layout,
-                        "corners": c.corners,
-                        "confidence": c.confidence,
-                        "rotation": c.rotation_degrees,
-                        "patch_pixels": c.patch_pixels,
-                        "gap": c.gap,
-                    }))
+                    .map(|c| {
+                        json!({
+                            "chart": c.layout,
+                            "corners": c.corners,
+                            "confidence": c.confidence,
+                            "rotation": c.rotation_degrees,
+                            "patch_pixels": c.patch_pixels,
+                            "gap": c.gap,
+                        })
+                    })
                     .collect();
                 let line = json!({
                     "file": file.display().to_string(),

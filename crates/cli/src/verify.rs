@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use darkroot::verify::{LogLine, Limits, PRESETS, append, history, read_log, verify};
+use darkroot::verify::{Limits, LogLine, PRESETS, append, history, read_log, verify};
 use darkroot::{Settings, write_text};
 
 use crate::profile::{ShotArgs, store};
@@ -81,7 +81,8 @@ impl Verify {
             bail!("give a profile and a shot of a chart");
         };
         let profile = store().choose(profile)?.profile;
-        let request = self.shot.request(std::slice::from_ref(file), std::slice::from_ref(&self.light), None, "")?;
+        let request =
+            self.shot.request(std::slice::from_ref(file), std::slice::from_ref(&self.light), None, "")?;
         let found = match verify(&profile, &request, &Settings::default()) {
             Ok(found) => found,
             Err(fault) => {

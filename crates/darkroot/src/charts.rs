@@ -49,9 +49,7 @@ pub fn layout(text: &str) -> Result<Layout, Error> {
 /// # Errors
 /// Neither of both, a file that cannot be used, or a chart without a built-in reference.
 pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, Error> {
-    let fault = |what: String| {
-        Err(Error::Chart { path: text.unwrap_or(&layout.name).into(), what })
-    };
+    let fault = |what: String| Err(Error::Chart { path: text.unwrap_or(&layout.name).into(), what });
     let built_in = |name: &str| {
         let patches = chart::builtin_reference::builtin(name)?;
         let patches = patches.into_iter().map(|(n, lab)| (n, ReferenceColour::Lab(lab))).collect();
@@ -85,5 +83,9 @@ pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, 
         Ok(colours) => colours,
         Err(e) => return fault(e.to_string()),
     };
-    Ok(NamedReference { colours, name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), sha256 })
+    Ok(NamedReference {
+        colours,
+        name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        sha256,
+    })
 }

@@ -89,7 +89,13 @@ fn place(found: &Found) -> Place {
 ///
 /// # Errors
 /// A file that cannot be read or written.
-pub fn preview(input: &Path, found: &FoundCharts, output: &Path, overwrite: bool, settings: &Settings) -> Result<(), Error> {
+pub fn preview(
+    input: &Path,
+    found: &FoundCharts,
+    output: &Path,
+    overwrite: bool,
+    settings: &Settings,
+) -> Result<(), Error> {
     let view = View::open_any(input, settings)?;
     let longest = view.size.width.max(view.size.height);
     let bin = (1..).map(|k| k * view.bin()).find(|bin| longest / bin <= LONGEST).unwrap_or(1);
@@ -106,11 +112,8 @@ pub fn preview(input: &Path, found: &FoundCharts, output: &Path, overwrite: bool
             canvas.number(i + 1, at(chart.centre(i)));
         }
     }
-    let picture = photo::Picture {
-        size,
-        samples: Samples::U8(canvas.rgb),
-        space: PictureSpace::Rgb(RgbSpace::SRGB),
-    };
+    let picture =
+        photo::Picture { size, samples: Samples::U8(canvas.rgb), space: PictureSpace::Rgb(RgbSpace::SRGB) };
     let mut out = std::io::Cursor::new(Vec::new());
     encode::write(&picture, encode::Format::Png, &encode::Options::default(), &Metadata::default(), &mut out)
         .map_err(|source| Error::Encode { path: output.to_owned(), source })?;
@@ -147,7 +150,8 @@ impl Canvas {
         let top = planes.each_ref().map(|plane| {
             let mut values: Vec<f32> = plane.iter().copied().filter(|v| v.is_finite()).collect();
             let at = (values.len().saturating_sub(1)) * 995 / 1000;
-            if values.is_empty() { 1.0 } else { *values.select_nth_unstable_by(at, f32::total_cmp).1 }.max(1e-6)
+            if values.is_empty() { 1.0 } else { *values.select_nth_unstable_by(at, f32::total_cmp).1 }
+                .max(1e-6)
         });
         let byte = |v: f32| (RgbSpace::SRGB.curve.encode(f64::from(v.clamp(0.0, 1.0))) * 255.0).round() as u8;
         let rgb = (0..size.area()).flat_map(|i| [0, 1, 2].map(|c| byte(planes[c][i] / top[c]))).collect();

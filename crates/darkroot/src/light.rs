@@ -103,7 +103,8 @@ fn of_file(text: &str) -> Result<NamedLight, Error> {
             )));
         }
     };
-    if !(spectrum.stimulus_xyz().y > 0.0) {
+    let luminous = spectrum.stimulus_xyz().y > 0.0;
+    if !luminous {
         return Err(wrong(format!("`{name}` has no luminance; give the relative power of a light")));
     }
     Ok(of_spectrum(name, spectrum.clone()))

@@ -140,9 +140,8 @@ fn averaged(shots: &[Shot]) -> Vec<MeasuredPatch> {
         patch.excluded = None;
         patch.clipped = best.clipped;
         patch.rgb = [0, 1, 2].map(|c| usable.iter().map(|(p, k)| p.rgb[c] * k).sum::<f64>() / count);
-        patch.uncertainty = [0, 1, 2].map(|c| {
-            usable.iter().map(|(p, k)| (p.uncertainty[c] * k).powi(2)).sum::<f64>().sqrt() / count
-        });
+        patch.uncertainty = [0, 1, 2]
+            .map(|c| usable.iter().map(|(p, k)| (p.uncertainty[c] * k).powi(2)).sum::<f64>().sqrt() / count);
         patch
     };
     (0..first.patches.len()).map(one).collect()

@@ -56,7 +56,8 @@ pub const PRESETS: [(&str, Limits); 3] = [
 impl Limits {
     /// Which limits a shot does not keep, in words.
     pub fn broken(&self, found: &Verification) -> Vec<String> {
-        let (s, what) = if self.sl1 { (found.sl1, "dE2000 (SL = 1)") } else { (found.errors.de2000, "dE2000") };
+        let (s, what) =
+            if self.sl1 { (found.sl1, "dE2000 (SL = 1)") } else { (found.errors.de2000, "dE2000") };
         let mut broken = Vec::new();
         if let Some(limit) = self.mean.filter(|limit| s.mean > *limit) {
             broken.push(format!("mean {what} is {:.2}, more than {limit}", s.mean));
@@ -106,11 +107,19 @@ pub fn verify(profile: &Profile, request: &ChartRequest, settings: &Settings) ->
         off(a).total_cmp(&off(b))
     });
     let promised = nearest.and_then(|c| c.figures.leave_one_out.or(c.figures.held_out)).map(|e| e.de2000);
-    Ok(Verification { within_four: below as f64 / pairs.len().max(1) as f64, shot, patches, errors, sl1, promised })
+    Ok(Verification {
+        within_four: below as f64 / pairs.len().max(1) as f64,
+        shot,
+        patches,
+        errors,
+        sl1,
+        promised,
+    })
 }
 
 /// Columns of the log.
-const COLUMNS: &str = "date,file,camera,light,de2000_mean,de2000_median,de2000_p95,de2000_max,white_r,white_g,white_b,result";
+const COLUMNS: &str =
+    "date,file,camera,light,de2000_mean,de2000_median,de2000_p95,de2000_max,white_r,white_g,white_b,result";
 
 /// One line of a log.
 #[derive(Debug, Clone, PartialEq)]
@@ -154,14 +163,21 @@ impl LogLine {
 
     fn parse(line: &str) -> Option<Self> {
         let cells: Vec<&str> = line.split(',').collect();
-        let [date, file, camera, light, mean, median, p95, max, r, g, b, result] = cells[..] else { return None };
+        let [date, file, camera, light, mean, median, p95, max, r, g, b, result] = cells[..] else {
+            return None;
+        };
         let number = |s: &str| s.trim().parse::<f64>().ok().filter(|v| v.is_finite());
         Some(Self {
             date: date.to_owned(),
             file: file.into(),
             camera: camera.to_owned(),
             light: light.to_owned(),
-            de2000: Summary { mean: number(mean)?, median: number(median)?, p95: number(p95)?, max: number(max)? },
+            de2000: Summary {
+                mean: number(mean)?,
+                median: number(median)?,
+                p95: number(p95)?,
+                max: number(max)?,
+            },
             white: [number(r)?, number(g)?, number(b)?],
             passed: result.trim() == "pass",
         })
@@ -210,7 +226,9 @@ pub fn history(lines: &[LogLine]) -> String {
         let all = || series.iter().flat_map(|(_, _, v)| v.iter().copied());
         let (low, high) = (all().fold(0.0, f64::min), all().fold(1e-3, f64::max));
         let y = |v: f64| HEIGHT - 24.0 - (HEIGHT - 40.0) * (v - low) / (high - low);
-        let mut svg = format!("<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"history\">");
+        let mut svg = format!(
+            "<svg class=\"plot\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"history\">"
+        );
         let _ = write!(
             svg,
             "<path d=\"M40 {0}H{1}\" stroke=\"#ccc\"/><text x=\"2\" y=\"14\">{high:.2}</text><text x=\"2\" y=\"{0}\">{low:.2}\
@@ -246,7 +264,8 @@ pub fn history(lines: &[LogLine]) -> String {
         ("mean dE2000", "#1f5fa8", lines.iter().map(|l| l.de2000.mean).collect()),
         ("largest", "#b00020", lines.iter().map(|l| l.de2000.max).collect()),
     ]);
-    let white = plot(&[("red", "#b00020", drift(0)), ("green", "#2d7a2d", drift(1)), ("blue", "#1f5fa8", drift(2))]);
+    let white =
+        plot(&[("red", "#b00020", drift(0)), ("green", "#2d7a2d", drift(1)), ("blue", "#1f5fa8", drift(2))]);
     let failed = lines.iter().filter(|l| !l.passed).count();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>History</title><style>{}.plot{{width:100%;\

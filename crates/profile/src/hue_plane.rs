@@ -49,7 +49,7 @@ impl HuePlane {
     /// 12, 18 ... of them or a value is not finite.
     pub fn new(knots: Vec<Matrix3>) -> Option<Self> {
         let sound = !knots.is_empty()
-            && knots.len() % CORNERS == 0
+            && knots.len().is_multiple_of(CORNERS)
             && knots.iter().flat_map(|m| m.iter()).all(|v| v.is_finite());
         sound.then_some(Self { knots })
     }

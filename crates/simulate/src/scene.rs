@@ -90,13 +90,7 @@ impl Scene {
     /// A chart with patches of these reflectances, row by row, before a grey wall. `corners` are the outer corners of the
     /// corner patches, in pixels (integers are pixel centres), clockwise from the first patch; `gap` is the width of
     /// the gap between patches, in patch widths.
-    pub fn chart(
-        size: Size,
-        corners: [[f64; 2]; 4],
-        patches: &[Spectrum],
-        columns: usize,
-        gap: f64,
-    ) -> Self {
+    pub fn chart(size: Size, corners: [[f64; 2]; 4], patches: &[Spectrum], columns: usize, gap: f64) -> Self {
         let rows = patches.len() / columns.max(1);
         let around = [FRAME_REFLECTANCE, WALL_REFLECTANCE].map(Spectrum::constant);
         let materials = patches.iter().take(columns * rows).cloned().chain(around).collect();

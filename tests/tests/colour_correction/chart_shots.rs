@@ -61,11 +61,16 @@ fn shot(camera: &str, light_name: &str, layout: &str, patches: &[Spectrum]) -> (
     let size = Size { width: SIZE.width * scale, height: SIZE.height * scale };
     let corners = CORNERS.map(|p| p.map(|v| v * scale as f64));
     let scene = Scene::chart(size, corners, patches, layout.columns, layout.gap);
-    let folder = std::env::temp_dir().join(format!("darkroot-{}-{camera}-{light_name}-{}", std::process::id(), layout.name));
+    let folder = std::env::temp_dir().join(format!(
+        "darkroot-{}-{camera}-{light_name}-{}",
+        std::process::id(),
+        layout.name
+    ));
     std::fs::create_dir_all(&folder).unwrap();
     let write = |name: &str, scene: &Scene| {
         let path = folder.join(name);
-        std::fs::write(&path, dng::write(&expose(scene, &body, &exposure), dng::Storage::Uncompressed)).unwrap();
+        std::fs::write(&path, dng::write(&expose(scene, &body, &exposure), dng::Storage::Uncompressed))
+            .unwrap();
         path
     };
     let file = write("chart.dng", &scene);

@@ -91,6 +91,9 @@ fn noise_growth(model: &Model, samples: &Samples) -> f64 {
     DARK.into_iter().map(|rgb| noise(model, rgb) / noise(&linear, rgb)).fold(0.0, f64::max)
 }
 
+/// Mean, maximum, folds and noise of one case.
+type Case = (f64, f64, f64, f64);
+
 struct Held {
     mean: f64,
     max: f64,
@@ -134,9 +137,9 @@ fn held_out_with(
     };
     // Noise is drawn several times for each case.
     let rounds = if noise > 0.0 { 4 } else { 1 };
-    let all: Vec<(f64, f64, f64, f64)> =
+    let all: Vec<Case> =
         (0..rounds).flat_map(|_| cases()).collect::<Vec<_>>().into_par_iter().enumerate().map(one).collect();
-    let mean = |f: &dyn Fn(&(f64, f64, f64, f64)) -> f64| all.iter().map(f).sum::<f64>() / all.len() as f64;
+    let mean = |f: &dyn Fn(&Case) -> f64| all.iter().map(f).sum::<f64>() / all.len() as f64;
     Held {
         mean: mean(&|v| v.0),
         max: mean(&|v| v.1),

@@ -29,7 +29,7 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
     if cells.is_empty() {
         return Err(ReferenceError::Format("it has no data between BEGIN_DATA and END_DATA".to_owned()));
     }
-    if cells.len() % columns.len() != 0 {
+    if !cells.len().is_multiple_of(columns.len()) {
         let what = format!("{} values do not fill rows of {} columns", cells.len(), columns.len());
         return Err(ReferenceError::Format(what));
     }

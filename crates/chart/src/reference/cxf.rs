@@ -3,8 +3,8 @@
 use colour::{Lab, Xyz};
 use roxmltree::{Document, Node};
 
-use super::{Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
 use super::ReferenceColour;
+use super::{Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
 
 /// Reads every object that has a colour: its reflectance, else its XYZ, else its Lab.
 pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
@@ -17,18 +17,27 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
     let objects = root.descendants().filter(|n| n.tag_name().name() == "Object");
     let mut patches = Vec::new();
     for (i, object) in objects.enumerate() {
-        let name = object.attribute("Name").or(object.attribute("Id")).map_or_else(|| (i + 1).to_string(), str::to_owned);
+        let name = object
+            .attribute("Name")
+            .or(object.attribute("Id"))
+            .map_or_else(|| (i + 1).to_string(), str::to_owned);
         if let Some(colour) = colour(&root, &object, &name)? {
             patches.push((name, colour));
         }
     }
     if patches.is_empty() {
-        return Err(ReferenceError::Columns("no Object with a ReflectanceSpectrum, ColorCIEXYZ or ColorCIELab".into()));
+        return Err(ReferenceError::Columns(
+            "no Object with a ReflectanceSpectrum, ColorCIEXYZ or ColorCIELab".into(),
+        ));
     }
     Ok(Reference { patches })
 }
 
-fn colour(root: &Node<'_, '_>, object: &Node<'_, '_>, name: &str) -> Result<Option<ReferenceColour>, ReferenceError> {
+fn colour(
+    root: &Node<'_, '_>,
+    object: &Node<'_, '_>,
+    name: &str,
+) -> Result<Option<ReferenceColour>, ReferenceError> {
     let find = |tag: &str| object.descendants().find(|n| n.tag_name().name() == tag);
     let number = |text: &str| {
         let value: Option<f64> = text.trim().parse().ok().filter(|v: &f64| v.is_finite());
@@ -71,8 +80,8 @@ fn range(root: &Node<'_, '_>, spectrum: &Node<'_, '_>) -> Option<(f64, f64)> {
     let specification = root.descendants().find(|n| {
         n.tag_name().name() == "ColorSpecification" && wanted.is_some() && n.attribute("Id") == wanted
     });
-    let stated = specification
-        .and_then(|s| s.descendants().find(|n| n.tag_name().name() == "WavelengthRange"));
+    let stated =
+        specification.and_then(|s| s.descendants().find(|n| n.tag_name().name() == "WavelengthRange"));
     let value = |name: &str| {
         let text = spectrum.attribute(name).or_else(|| stated.and_then(|n| n.attribute(name)));
         text.and_then(|t| t.parse::<f64>().ok())
@@ -111,8 +120,18 @@ mod tests {
     fn broken_files_are_named() {
         for (text, words) in [
             (file("<cc:ReflectanceSpectrum>0.1 0.2</cc:ReflectanceSpectrum>"), "start wavelength"),
-            (file("<cc:ReflectanceSpectrum StartWL=\"400\" Increment=\"10\">0.1 x</cc:ReflectanceSpectrum>"), "`x`"),
-            (file("<cc:ReflectanceSpectrum StartWL=\"400\" Increment=\"10\">0.1 0.2</cc:ReflectanceSpectrum>"), "700 nm"),
+            (
+                file(
+                    "<cc:ReflectanceSpectrum StartWL=\"400\" Increment=\"10\">0.1 x</cc:ReflectanceSpectrum>",
+                ),
+                "`x`",
+            ),
+            (
+                file(
+                    "<cc:ReflectanceSpectrum StartWL=\"400\" Increment=\"10\">0.1 0.2</cc:ReflectanceSpectrum>",
+                ),
+                "700 nm",
+            ),
             (file(""), "no Object"),
             ("<html/>".to_owned(), "`html`"),
             ("<cc:CxF".to_owned(), "no reference file"),

@@ -33,7 +33,9 @@ pub enum ReferenceError {
     #[error("is no reference file: {0}; known are CGATS (.txt, .cie, .ti2, .ti3), CxF 3 and CSV")]
     Format(String),
     /// Neither Lab nor XYZ nor spectra.
-    #[error("has no colours: its columns are {0}; it needs LAB_L, LAB_A, LAB_B, or XYZ_X, XYZ_Y, XYZ_Z, or spectra")]
+    #[error(
+        "has no colours: its columns are {0}; it needs LAB_L, LAB_A, LAB_B, or XYZ_X, XYZ_Y, XYZ_Z, or spectra"
+    )]
     Columns(String),
     /// A cell that should be a number is none.
     #[error("patch {patch}: `{cell}` is not a number")]
@@ -60,7 +62,9 @@ pub enum ReferenceError {
         source: SpectrumError,
     },
     /// The chart has patches that the reference has not.
-    #[error("has no patch {missing} (it has {have} patches, the chart {need}); is it the reference of another chart?")]
+    #[error(
+        "has no patch {missing} (it has {have} patches, the chart {need}); is it the reference of another chart?"
+    )]
     Missing {
         /// Name of the first missing patch.
         missing: String,
@@ -97,9 +101,9 @@ impl ReferenceColour {
     /// XYZ under D50 for the CIE 1931 observer, Y = 1 for the perfect diffuser.
     pub fn xyz_d50(&self) -> Xyz {
         match self {
-            Self::Reflectance(_) => self
-                .spectrum()
-                .map_or_else(Xyz::default, |s| s.reflected_xyz(&Spectrum::daylight(5003.0))),
+            Self::Reflectance(_) => {
+                self.spectrum().map_or_else(Xyz::default, |s| s.reflected_xyz(&Spectrum::daylight(5003.0)))
+            }
             Self::Xyz(xyz) => *xyz,
             Self::Lab(lab) => lab.xyz(white::D50),
         }
@@ -147,7 +151,8 @@ impl Reference {
 /// A patch name without what people write differently: case, blanks, leading zeros of numbers.
 fn key(name: &str) -> String {
     let plain: String = name.chars().filter(|c| c.is_alphanumeric() || *c == '.').collect();
-    let letters: String = plain.chars().take_while(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect();
+    let letters: String =
+        plain.chars().take_while(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect();
     let rest: String = plain.chars().skip_while(|c| c.is_alphabetic()).collect();
     letters + rest.trim_start_matches('0')
 }

@@ -55,7 +55,9 @@ impl Table {
                 value.ok_or_else(|| ReferenceError::Number { patch: patch.clone(), cell: cell.to_owned() })
             };
             match &columns {
-                Columns::Spectra(places) => places.iter().map(|(_, c)| number(*c)).collect::<Result<Vec<_>, _>>(),
+                Columns::Spectra(places) => {
+                    places.iter().map(|(_, c)| number(*c)).collect::<Result<Vec<_>, _>>()
+                }
                 Columns::Xyz(places) | Columns::Lab(places) => places.iter().map(|c| number(*c)).collect(),
             }
             .map(|values| (patch, values))
@@ -87,8 +89,7 @@ impl Table {
     }
 
     fn name_column(&self) -> Option<usize> {
-        const NAMES: [&str; 7] =
-            ["SAMPLE_NAME", "SAMPLE_LOC", "SAMPLE_ID", "NAME", "PATCH", "ID", "SAMPLE"];
+        const NAMES: [&str; 7] = ["SAMPLE_NAME", "SAMPLE_LOC", "SAMPLE_ID", "NAME", "PATCH", "ID", "SAMPLE"];
         let is = |wanted: &str| self.columns.iter().position(|c| c.eq_ignore_ascii_case(wanted));
         NAMES.iter().find_map(|name| is(name))
     }
@@ -112,7 +113,9 @@ impl Table {
             let [a, b, c] = names.map(place);
             Some([a?, b?, c?])
         };
-        if let Some(places) = triple([["XYZ_X", "X", "CIE_X"], ["XYZ_Y", "Y", "CIE_Y"], ["XYZ_Z", "Z", "CIE_Z"]]) {
+        if let Some(places) =
+            triple([["XYZ_X", "X", "CIE_X"], ["XYZ_Y", "Y", "CIE_Y"], ["XYZ_Z", "Z", "CIE_Z"]])
+        {
             return Ok(Columns::Xyz(places));
         }
         if let Some(places) = triple([["LAB_L", "L", "L*"], ["LAB_A", "A", "A*"], ["LAB_B", "B", "B*"]]) {
@@ -133,7 +136,8 @@ fn wavelength(column: &str) -> Option<f64> {
     let digits = upper.trim_end_matches("NM");
     let digits = digits.trim_start_matches(|c: char| !c.is_ascii_digit());
     let prefix = &upper[..upper.find(|c: char| c.is_ascii_digit())?];
-    let known = ["", "SPEC_", "SPECTRAL_", "SPECTRAL_NM", "SPECTRAL_NM_", "NM", "NM_", "R_", "R", "REFL_", "R_NM"];
+    let known =
+        ["", "SPEC_", "SPECTRAL_", "SPECTRAL_NM", "SPECTRAL_NM_", "NM", "NM_", "R_", "R", "REFL_", "R_NM"];
     let nm: f64 = digits.parse().ok()?;
     (known.contains(&prefix) && (300.0..=1100.0).contains(&nm)).then_some(nm)
 }

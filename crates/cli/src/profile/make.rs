@@ -207,11 +207,16 @@ fn say_light(light: &MadeLight) {
         let kind = compared.kind.to_string();
         match &compared.result {
             Ok(f) => {
-                let pair = |e: Option<profile::Errors>| match e.map(|e| e.de2000).filter(|s| s.max.is_finite()) {
-                    Some(s) => format!("{:5.2} / {:5.2}", s.mean, s.max),
-                    None => "not determined".to_owned(),
-                };
-                crate::say(format_args!("  {mark} {kind:13} {}   {}", pair(f.training), pair(f.leave_one_out)));
+                let pair =
+                    |e: Option<profile::Errors>| match e.map(|e| e.de2000).filter(|s| s.max.is_finite()) {
+                        Some(s) => format!("{:5.2} / {:5.2}", s.mean, s.max),
+                        None => "not determined".to_owned(),
+                    };
+                crate::say(format_args!(
+                    "  {mark} {kind:13} {}   {}",
+                    pair(f.training),
+                    pair(f.leave_one_out)
+                ));
             }
             Err(reason) => crate::say(format_args!("  {mark} {kind:13} {reason}")),
         }
@@ -246,16 +251,18 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
             let gates: Vec<_> = s
                 .gates
                 .iter()
-                .map(|g| json!({
-                    "name": g.name,
-                    "verdict": match g.verdict {
-                        Verdict::Good => "good",
-                        Verdict::Warning => "warning",
-                        Verdict::Refused => "failed",
-                    },
-                    "value": g.value,
-                    "words": g.words,
-                }))
+                .map(|g| {
+                    json!({
+                        "name": g.name,
+                        "verdict": match g.verdict {
+                            Verdict::Good => "good",
+                            Verdict::Warning => "warning",
+                            Verdict::Refused => "failed",
+                        },
+                        "value": g.value,
+                        "words": g.words,
+                    })
+                })
                 .collect();
             json!({
                 "file": s.path.display().to_string(),
@@ -271,14 +278,16 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
         .calibrated
         .patches
         .iter()
-        .map(|p| json!({
-            "name": p.name,
-            "rgb": p.rgb,
-            "uncertainty": p.uncertainty,
-            "de2000": p.de2000,
-            "left_out_de2000": p.left_out,
-            "excluded": p.excluded,
-        }))
+        .map(|p| {
+            json!({
+                "name": p.name,
+                "rgb": p.rgb,
+                "uncertainty": p.uncertainty,
+                "de2000": p.de2000,
+                "left_out_de2000": p.left_out,
+                "excluded": p.excluded,
+            })
+        })
         .collect();
     json!({
         "light": light.light.light.name,

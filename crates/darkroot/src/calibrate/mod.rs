@@ -192,9 +192,10 @@ fn compare(
     light: &NamedLight,
 ) -> Vec<(Compared, Option<fit::Fit>)> {
     let statistics = Population::builtin().zip(VirtualSet::builtin());
-    let prior = statistics.as_ref().zip(light.spectrum.as_ref()).and_then(|((population, set), spectrum)| {
-        Some((Prior::under(population, spectrum)?, set, spectrum))
-    });
+    let prior = statistics
+        .as_ref()
+        .zip(light.spectrum.as_ref())
+        .and_then(|((population, set), spectrum)| Some((Prior::under(population, spectrum)?, set, spectrum)));
     let one = |kind: Kind| {
         let result = match (kind, spectra, &prior) {
             (Kind::Spectral | Kind::Chromatic, Some(reflectances), Some((prior, set, light))) => {
@@ -207,9 +208,7 @@ fn compare(
                 let (figures, settings) = (fit.figures(samples), fit.settings.clone());
                 (Compared { kind, result: Ok(figures), settings }, Some(fit))
             }
-            Err(fault) => {
-                (Compared { kind, result: Err(fault.to_string()), settings: String::new() }, None)
-            }
+            Err(fault) => (Compared { kind, result: Err(fault.to_string()), settings: String::new() }, None),
         }
     };
     KINDS.into_iter().map(one).collect()
@@ -258,7 +257,8 @@ mod tests {
     #[test]
     fn the_best_model_beats_the_matrix_and_says_so() {
         let light = Illuminant::by_name("D50").unwrap().spectrum();
-        let found = calibrate(&d50(), &patches(&Camera::simulated_one(), &light, 0.3), &Choice::default()).unwrap();
+        let found =
+            calibrate(&d50(), &patches(&Camera::simulated_one(), &light, 0.3), &Choice::default()).unwrap();
         let mean = |kind: Kind| {
             let compared = found.compared.iter().find(|c| c.kind == kind).unwrap();
             compared.result.as_ref().unwrap().leave_one_out.unwrap().de2000.mean

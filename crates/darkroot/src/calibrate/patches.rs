@@ -103,7 +103,8 @@ impl<'a> Reference<'a> {
         light_white: Xyz,
         notes: &mut Vec<String>,
     ) -> Self {
-        let spectral = patches.iter().filter(|p| matches!(p.reference, ReferenceColour::Reflectance(_))).count();
+        let spectral =
+            patches.iter().filter(|p| matches!(p.reference, ReferenceColour::Reflectance(_))).count();
         let name = &light.light.name;
         if spectral < patches.len() && name != "D50" {
             notes.push(format!(

@@ -100,7 +100,12 @@ fn gates(page: &mut String, light: &MadeLight) {
                 Verdict::Refused => ("refused", "failed"),
             };
             let advice = if *verdict == Verdict::Good { String::new() } else { format!(": {advice}") };
-            let _ = write!(page, "<tr class=\"{class}\"><td>{mark}</td><td>{}{}</td></tr>", escape(words), escape(&advice));
+            let _ = write!(
+                page,
+                "<tr class=\"{class}\"><td>{mark}</td><td>{}{}</td></tr>",
+                escape(words),
+                escape(&advice)
+            );
         }
     }
     if let Some(off) = light.nonlinearity {
@@ -136,7 +141,11 @@ fn swatches(patches: &[Judged], layout: &Layout) -> String {
         }
         let text = match &patch.excluded {
             Some(reason) => escape(reason),
-            None => format!("{:.2} <tspan class=\"unseen\">{:.2}</tspan>", patch.de2000, patch.left_out.unwrap_or(patch.de2000)),
+            None => format!(
+                "{:.2} <tspan class=\"unseen\">{:.2}</tspan>",
+                patch.de2000,
+                patch.left_out.unwrap_or(patch.de2000)
+            ),
         };
         let class = if patch.excluded.is_some() { "excluded" } else { "" };
         let _ = write!(
@@ -193,7 +202,8 @@ fn exposures(page: &mut String, calibrated: &Calibrated) {
     for stops in EXPOSURES {
         let k = 2f64.powi(stops);
         let usable: Vec<&Judged> = calibrated.patches.iter().filter(|p| p.excluded.is_none()).collect();
-        let estimates: Vec<Xyz> = usable.iter().map(|p| model.xyz(p.rgb.map(|v| v * k)).scaled(1.0 / k)).collect();
+        let estimates: Vec<Xyz> =
+            usable.iter().map(|p| model.xyz(p.rgb.map(|v| v * k)).scaled(1.0 / k)).collect();
         let truths: Vec<Xyz> = usable.iter().map(|p| p.reference).collect();
         let errors = Errors::between(&estimates, &truths, white::D50);
         let _ = write!(page, "<td>{:.2}</td>", errors.de2000.mean);

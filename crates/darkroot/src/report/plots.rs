@@ -33,11 +33,8 @@ fn close(svg: &mut String, caption: &str) {
 /// Arrows in a*b* from each reference colour to what the profile makes of it.
 pub(super) fn vectors(patches: &[Judged]) -> String {
     const STRETCH: f64 = 5.0;
-    let reach = used(patches)
-        .map(|p| lab(p.reference))
-        .map(|c| c.a.abs().max(c.b.abs()))
-        .fold(40.0, f64::max)
-        * 1.15;
+    let reach =
+        used(patches).map(|p| lab(p.reference)).map(|c| c.a.abs().max(c.b.abs())).fold(40.0, f64::max) * 1.15;
     let place = |a: f64, b: f64| (SIDE / 2.0 * (1.0 + a / reach), SIDE / 2.0 * (1.0 - b / reach));
     let mut svg = String::new();
     open(&mut svg, "residuals in a*b*");
@@ -105,7 +102,8 @@ pub(super) fn trust(calibration: &Calibration, patches: &[Judged]) -> String {
     let position = |rgb: [f64; 3]| {
         let largest = rgb.iter().copied().fold(1e-9, f64::max);
         let least = rgb.iter().copied().fold(f64::INFINITY, f64::min).max(0.0);
-        let (angle, radius) = (profile::hue_plane::position(rgb) / 6.0 * std::f64::consts::TAU, 1.0 - least / largest);
+        let (angle, radius) =
+            (profile::hue_plane::position(rgb) / 6.0 * std::f64::consts::TAU, 1.0 - least / largest);
         [radius * angle.cos(), radius * angle.sin()]
     };
     let known: Vec<[f64; 2]> = used(patches).map(|p| position(p.rgb)).collect();
@@ -120,17 +118,20 @@ pub(super) fn trust(calibration: &Calibration, patches: &[Judged]) -> String {
             let pure = profile::hue_plane::at_position(6.0 * (hue as f64 + 0.5) / HUES as f64);
             let rgb = pure.map(|p| (1.0 - saturation + saturation * p).max(0.02));
             let here = position(rgb);
-            let near = known
-                .iter()
-                .map(|[x, y]| (x - here[0]).hypot(y - here[1]))
-                .fold(f64::INFINITY, f64::min);
+            let near =
+                known.iter().map(|[x, y]| (x - here[0]).hypot(y - here[1])).fold(f64::INFINITY, f64::min);
             let folds = calibration.model.jacobian(rgb).determinant() * sign <= 0.0;
-            let fill = if folds { "#b00020".to_owned() } else { css(calibration.model.xyz(rgb.map(|v| v * 0.6))) };
+            let fill =
+                if folds { "#b00020".to_owned() } else { css(calibration.model.xyz(rgb.map(|v| v * 0.6))) };
             // Full colour beside a patch, nearly none farther than a quarter of the disc away.
             let opacity = if folds { 1.0 } else { (1.0 - near / 0.35).clamp(0.08, 1.0) };
             let angle = |i: usize| i as f64 / HUES as f64 * std::f64::consts::TAU;
             let point = |radius: f64, angle: f64| {
-                format!("{:.1} {:.1}", half * (1.0 + radius * angle.cos()), half * (1.0 - radius * angle.sin()))
+                format!(
+                    "{:.1} {:.1}",
+                    half * (1.0 + radius * angle.cos()),
+                    half * (1.0 - radius * angle.sin())
+                )
             };
             let _ = write!(
                 svg,

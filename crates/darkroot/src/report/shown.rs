@@ -35,11 +35,14 @@ fn overlay(shot: &Shot, size: Size) -> String {
         "<svg viewBox=\"-0.5 -0.5 {} {}\" preserveAspectRatio=\"none\" fill=\"none\">",
         size.width, size.height
     );
-    let points = |quad: &Quad| {
-        quad.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")
-    };
+    let points =
+        |quad: &Quad| quad.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ");
     let stroke = size.width as f64 / 400.0;
-    let _ = write!(svg, "<polygon points=\"{}\" stroke=\"#ff0\" stroke-width=\"{stroke}\"/>", points(&shot.corners));
+    let _ = write!(
+        svg,
+        "<polygon points=\"{}\" stroke=\"#ff0\" stroke-width=\"{stroke}\"/>",
+        points(&shot.corners)
+    );
     for (i, window) in shot.windows.iter().enumerate() {
         let [x, y] = [0, 1].map(|k| window.iter().map(|p| p[k]).sum::<f64>() / 4.0);
         let font = (window[1][0] - window[0][0]).hypot(window[1][1] - window[0][1]) * 0.45;
@@ -95,7 +98,9 @@ mod tests {
     #[test]
     fn base64_is_that_of_the_standard() {
         // RFC 4648, section 10.
-        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
             assert_eq!(base64(bytes.as_bytes()), text);
         }
     }

@@ -82,13 +82,7 @@ pub fn gates(
     gates
 }
 
-fn graded(
-    name: &'static str,
-    value: f64,
-    (good, usable): (f64, f64),
-    words: String,
-    advice: &str,
-) -> Gate {
+fn graded(name: &'static str, value: f64, (good, usable): (f64, f64), words: String, advice: &str) -> Gate {
     let verdict = if value <= good {
         Verdict::Good
     } else if value <= usable {
@@ -102,9 +96,8 @@ fn graded(
 fn exposure(view: &View, measurements: &[Measurement], expected: &[Xyz]) -> Gate {
     let brightest = (0..expected.len()).max_by(|a, b| expected[*a].y.total_cmp(&expected[*b].y)).unwrap_or(0);
     let white = &measurements[brightest];
-    let share = (0..3)
-        .map(|c| white.mean[c] / f64::from(view.frame.saturation[c]).max(1e-6))
-        .fold(0.0, f64::max);
+    let share =
+        (0..3).map(|c| white.mean[c] / f64::from(view.frame.saturation[c]).max(1e-6)).fold(0.0, f64::max);
     let words = format!("the white patch is at {:.0} % of saturation", 100.0 * share);
     let stops = (0.7 / share.max(1e-6)).log2();
     let amount = |stops: f64| match stops.abs() {

@@ -82,7 +82,8 @@ pub fn open(
     settings: &Settings,
 ) -> Result<(Shot, View), Error> {
     let fault = |what: String| Error::Chart { path: path.to_owned(), what };
-    let view = if options.allow_rendered { View::open_any(path, settings)? } else { View::open(path, settings)? };
+    let view =
+        if options.allow_rendered { View::open_any(path, settings)? } else { View::open(path, settings)? };
     let found = match &options.corners {
         Some(corners) => find_chart::by_hand(layout, corners),
         None => find_chart::best(&view, layout),
@@ -142,12 +143,10 @@ pub fn open(
             let light = slope.at(*place);
             *rgb = rgb.map(|v| v / light);
         }
-        notes.push(format!("a slope of light of {:.1} % over the chart was taken out", 100.0 * slope.range()));
+        notes
+            .push(format!("a slope of light of {:.1} % over the chart was taken out", 100.0 * slope.range()));
     }
-    let neutral: Vec<bool> = expected
-        .iter()
-        .map(|c| c.lab(white::D50).chroma() < NEUTRAL_CHROMA)
-        .collect();
+    let neutral: Vec<bool> = expected.iter().map(|c| c.lab(white::D50).chroma() < NEUTRAL_CHROMA).collect();
     let green: Vec<f64> = rgb.iter().map(|rgb| rgb[1]).collect();
     let veil = glare(&green, &expected, &neutral);
     if options.correct_glare {
@@ -237,7 +236,8 @@ fn companion(path: &Path, of: &View, settings: &Settings) -> Result<View, Error>
 
 fn check_inside(corners: &Quad, view: &View) -> Result<(), String> {
     let inside = |[x, y]: &[f64; 2]| {
-        (-0.5..=view.size.width as f64 - 0.5).contains(x) && (-0.5..=view.size.height as f64 - 0.5).contains(y)
+        (-0.5..=view.size.width as f64 - 0.5).contains(x)
+            && (-0.5..=view.size.height as f64 - 0.5).contains(y)
     };
     if corners.iter().all(inside) {
         return Ok(());

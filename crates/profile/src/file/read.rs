@@ -176,8 +176,9 @@ fn light(name: String, [x, y]: [f64; 2], kelvin: Option<f64>) -> Result<Light, S
     }
     let light = Light { name, xy: Xy::new(x, y) };
     let own = light.kelvin();
+    let agrees = |kelvin: f64| (kelvin / own - 1.0).abs() < 0.02;
     match kelvin {
-        Some(kelvin) if !((kelvin / own - 1.0).abs() < 0.02) => {
+        Some(kelvin) if !agrees(kelvin) => {
             Err(format!("kelvin = {kelvin} is not the colour temperature of its xy, {own:.0}"))
         }
         _ => Ok(light),

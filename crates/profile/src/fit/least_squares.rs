@@ -94,7 +94,8 @@ impl Problem {
         let qr = scaled.qr();
         let r = qr.r();
         let largest = r.diagonal().amax();
-        if r.diagonal().iter().any(|d| !(d.abs() > SINGULAR * largest)) {
+        let determined = r.diagonal().iter().all(|d| d.abs() > SINGULAR * largest);
+        if !determined {
             return None;
         }
         let mut rotated = self.targets.clone();

@@ -32,13 +32,16 @@ pub fn polynomial(samples: &Samples, degree: u8) -> Result<Fit, FitError> {
     Ok(Fit { model, left_out, settings: String::new() })
 }
 
+/// Value of a term for one colour.
+type Value = dyn Fn([f64; 3], usize) -> f64;
+
 /// What matrices, polynomials and root polynomials that were fitted at exposure 1 make of the colours at `exposure`
 /// (a factor), each colour left out of its fit: the protocol of the paper's second table.
 ///
 /// # Errors
 /// Too few colours, colours that do not determine the terms, or another kind of model.
 pub fn left_out_at_exposure(samples: &Samples, kind: Kind, exposure: f64) -> Result<Vec<Xyz>, FitError> {
-    let (count, value): (usize, Box<dyn Fn([f64; 3], usize) -> f64>) = match kind {
+    let (count, value): (usize, Box<Value>) = match kind {
         Kind::Polynomial(degree) => {
             let terms = polynomial::terms(degree);
             (terms.len(), Box::new(|rgb, term| polynomial::value(terms[term], rgb)))

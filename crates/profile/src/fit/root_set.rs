@@ -219,7 +219,7 @@ impl Folds {
             .collect();
         let mut folds = Self { white: white.into(), slopes, norm: 1.0 };
         // At grey the slopes of psi vanish, so the first two features alone give the matrix.
-        folds.norm = folds.jacobian(&folds.slopes[0][..2].to_vec(), start).determinant();
+        folds.norm = folds.jacobian(&folds.slopes[0][..2], start).determinant();
         folds
     }
 
