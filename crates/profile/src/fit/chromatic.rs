@@ -21,7 +21,7 @@ const SET: f64 = 700.0;
 /// Weight of the pull to zero at saturated colours.
 const ANCHORS: f64 = 0.003;
 /// Weight of the residual's slope, which is what amplifies noise and folds colours over.
-const SLOPE: f64 = 0.05;
+const SLOPE: f64 = 0.12;
 /// Weight of an ideal band or edge.
 const IDEAL: f64 = 0.03;
 /// Step over which the slope is taken, relative to the largest channel.
