@@ -57,7 +57,9 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 4], String> {
     let usage = || format!("`{text}` is not four corners: write x,y,x,y,x,y,x,y in pixels");
     let numbers = numbers::<f64>(text).ok_or_else(usage)?;
     match numbers[..] {
-        [a, b, c, d, e, f, g, h] if numbers.iter().all(|n| n.is_finite()) => Ok([[a, b], [c, d], [e, f], [g, h]]),
+        [a, b, c, d, e, f, g, h] if numbers.iter().all(|n| n.is_finite()) => {
+            Ok([[a, b], [c, d], [e, f], [g, h]])
+        }
         _ => Err(usage()),
     }
 }

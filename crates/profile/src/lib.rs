@@ -51,5 +51,7 @@ pub use spectra::{Effective, Sensitivities};
 pub mod file;
 pub use file::Error;
 
+pub mod export;
+
 #[cfg(test)]
 mod samples_for_tests;

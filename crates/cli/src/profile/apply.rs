@@ -2,9 +2,8 @@
 
 use std::io::Write as _;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result};
 use clap::Args;
-use profile::Profile;
 
 use crate::Outcome;
 
@@ -25,7 +24,7 @@ pub(super) struct Apply {
 impl Apply {
     pub(super) fn run(self) -> Result<Outcome> {
         let profile = super::store().choose(&self.profile)?.profile;
-        let model = model(&profile, self.light.as_deref())?;
+        let model = super::lights::choose(&profile, self.light.as_deref())?.model;
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(std::io::stdin().lock());
         let head = reader.headers().context("stdin")?.clone();
         let column = |name: &str| {
@@ -49,27 +48,5 @@ impl Apply {
         }
         out.flush()?;
         Ok(Outcome::Done)
-    }
-}
-
-/// The model for a light by its name or temperature; the only one where none is named.
-fn model(profile: &Profile, light: Option<&str>) -> Result<profile::Model> {
-    let names: Vec<&str> = profile.calibrations().iter().map(|c| c.light.name.as_str()).collect();
-    let choices = names.join(", ");
-    match (light, profile.calibrations()) {
-        (None, [only]) => Ok(only.model.clone()),
-        (None, _) => bail!("the profile has calibrations for {choices}; choose one with `--light`"),
-        (Some(light), all) => {
-            if let Some(found) = all.iter().find(|c| c.light.name.eq_ignore_ascii_case(light)) {
-                return Ok(found.model.clone());
-            }
-            let kelvin = light.strip_suffix(['K', 'k']).and_then(|n| n.trim().parse::<f64>().ok());
-            match kelvin.filter(|k| *k > 0.0 && k.is_finite()) {
-                Some(kelvin) => Ok(profile.model_for(kelvin)),
-                None => bail!(
-                    "the profile has no light `{light}`; it has {choices}, or take a temperature (4000K)"
-                ),
-            }
-        }
     }
 }

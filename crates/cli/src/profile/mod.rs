@@ -1,10 +1,15 @@
 //! `darkroot profile`: make, judge and use camera profiles.
 
 mod apply;
+mod export;
 mod from_spectra;
+mod lights;
 mod lint;
 mod list;
+mod make;
 mod show;
+
+pub(crate) use make::ShotArgs;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
@@ -13,10 +18,16 @@ use darkroot::ProfileStore;
 use crate::{Common, Outcome};
 
 /// Make, judge and use camera profiles
+///
+/// With shots of a colour chart it makes a profile: darkroot profile chart.NEF --chart classic24 --light D50
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct Profile {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
+
+    #[command(flatten)]
+    make: make::Make,
 }
 
 #[derive(Debug, Subcommand)]
@@ -26,22 +37,25 @@ enum Command {
     List(list::List),
     Lint(lint::Lint),
     FromSpectra(from_spectra::FromSpectra),
+    Export(export::Export),
 }
 
 impl Profile {
     pub(crate) fn run(self, common: Common) -> Result<Outcome> {
-        match self.command {
+        let Some(command) = self.command else { return self.make.run(common) };
+        match command {
             Command::Apply(command) => command.run(),
             Command::Show(command) => command.run(),
             Command::List(command) => command.run(),
             Command::Lint(command) => command.run(),
             Command::FromSpectra(command) => command.run(common),
+            Command::Export(command) => command.run(common),
         }
     }
 }
 
 /// The user's profiles and those built in; profile files that cannot be used are said.
-fn store() -> ProfileStore {
+pub(crate) fn store() -> ProfileStore {
     let store = ProfileStore::user_folder()
         .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
     for fault in &store.faults {

@@ -147,8 +147,21 @@ fn two_lights_make_one_profile_and_shots_under_one_are_averaged() {
     desk.put("a.dng", shot(&Exposure { light: light("A"), ..daylight() }));
     let corners = corners();
     let run = desk.run(&[
-        "profile", "chart.dng", "b.dng", "a.dng", "--light", "D50", "--light", "D50", "--light", "A", "--corners", &corners,
-        "-o", "p.toml", "--json",
+        "profile",
+        "chart.dng",
+        "b.dng",
+        "a.dng",
+        "--light",
+        "D50",
+        "--light",
+        "D50",
+        "--light",
+        "A",
+        "--corners",
+        &corners,
+        "-o",
+        "p.toml",
+        "--json",
     ]);
     assert_eq!(run.code, 0, "{}", run.err);
     let lines: Vec<serde_json::Value> = run.out.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
@@ -168,7 +181,12 @@ fn uneven_light_is_taken_out_by_a_flat() {
     desk.put("flat.dng", dng::write(&flat, dng::Storage::Uncompressed));
     let plain = figures(&profile(&desk, &["--accept", "-o", "a.toml", "--json"]));
     let even = figures(&profile(&desk, &["--flat", "flat.dng", "-o", "b.toml", "--json"]));
-    assert!(mean(&even, "linear") < 0.7 * mean(&plain, "linear"), "{} {}", mean(&even, "linear"), mean(&plain, "linear"));
+    assert!(
+        mean(&even, "linear") < 0.7 * mean(&plain, "linear"),
+        "{} {}",
+        mean(&even, "linear"),
+        mean(&plain, "linear")
+    );
 }
 
 #[test]
@@ -224,9 +242,22 @@ fn what_does_not_fit_is_named() {
         (with(&["--model", "polynomial-3"]), 2, vec!["--force"]),
         (vec!["profile", "chart.dng", "-o", "p.toml"], 2, vec!["--light"]),
         (vec!["profile"], 2, vec!["shot of a chart"]),
-        (vec!["profile", "picture.jpg", "--light", "D50", "--corners", &corners, "-o", "p.toml"], 1, vec!["picture.jpg", "rendered", "--allow-rendered"]),
         (
-            vec!["profile", "chart.dng", "--light", "D50", "--corners", "0,0,900,0,900,300,0,300", "-o", "p.toml"],
+            vec!["profile", "picture.jpg", "--light", "D50", "--corners", &corners, "-o", "p.toml"],
+            1,
+            vec!["picture.jpg", "rendered", "--allow-rendered"],
+        ),
+        (
+            vec![
+                "profile",
+                "chart.dng",
+                "--light",
+                "D50",
+                "--corners",
+                "0,0,900,0,900,300,0,300",
+                "-o",
+                "p.toml",
+            ],
             1,
             vec!["outside of the picture", "take it whole"],
         ),
@@ -264,7 +295,8 @@ fn a_new_shot_is_judged_by_the_profile_and_logged() {
         let own: &[&str] = &["verify", "p.toml", "later.dng", "--light", "D50", "--corners", &corners];
         desk.run(&[own, more].concat())
     };
-    let good = verify(&["--max-mean", "2", "--preset", "fadgi-4star", "--log", "log.csv", "--date", "2026-05-01"]);
+    let good =
+        verify(&["--max-mean", "2", "--preset", "fadgi-4star", "--log", "log.csv", "--date", "2026-05-01"]);
     assert_eq!(good.code, 0, "{}", good.err);
     assert!(good.err.contains("the profile promises mean") && good.err.contains("worst:"), "{}", good.err);
     let bad = verify(&["--max-mean", "0.01", "--log", "log.csv"]);

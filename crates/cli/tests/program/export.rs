@@ -139,3 +139,30 @@ fn options_that_do_not_belong_to_the_format_are_refused() {
     }
     assert_eq!(desk.names(), ["there.icc"]);
 }
+
+#[test]
+fn a_dcp_serves_as_a_profile() {
+    let desk = Desk::with_dng();
+    desk.put("p.toml", SIMULATED);
+    export(&desk, &["p.toml", "--to", "dcp", "--for", "a.dng", "-o", "p.dcp"]);
+    let shown = desk.run(&["profile", "show", "p.dcp"]);
+    assert!(
+        shown.out.contains("DCP \"Darkroot Darkroot Simulated One D65\", dE2000 from it"),
+        "{}",
+        shown.out
+    );
+    let run = desk.run(&["develop", "a.dng", "--profile", "p.dcp", "-o", "dcp.png"]);
+    assert!(run.code == 0 && run.err.contains("profile for Darkroot Simulated One"), "{}", run.err);
+    desk.develop(&["a.dng", "--profile", "p.toml", "-o", "toml.png"]);
+    let picture = |name: &str| image::open(desk.path(name)).unwrap().into_rgb8();
+    let (one, two) = (picture("dcp.png"), picture("toml.png"));
+    let off = one.iter().zip(two.iter()).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(off <= Some(3), "{off:?}"); // Of 255, where the table clips a colour.
+
+    desk.put("broken.dcp", &desk.read("p.dcp")[..300]);
+    desk.fails(
+        2,
+        &["profile", "apply", "broken.dcp"],
+        &["broken.dcp", "is not a DCP file that this program reads"],
+    );
+}
