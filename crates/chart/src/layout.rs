@@ -65,7 +65,9 @@ pub enum LayoutError {
     #[error("the chart's patches are not a regular grid ({0}); darkroot recognises only grids")]
     NotAGrid(&'static str),
     /// There is no colour for a patch.
-    #[error("the layout gives no colour for patch {0}: add about its Lab or XYZ, by which the chart is recognised")]
+    #[error(
+        "the layout gives no colour for patch {0}: add about its Lab or XYZ, by which the chart is recognised"
+    )]
     NoColour(String),
     /// The number of patches does not fit columns and rows.
     #[error("{patches} patches do not fill {columns} columns and {rows} rows")]
@@ -116,7 +118,8 @@ impl Layout {
     pub fn from_toml(text: &str) -> Result<Self, LayoutError> {
         let own: Own = toml::from_str(text).map_err(|error| LayoutError::Toml(error.message().to_owned()))?;
         let title = own.title.unwrap_or_else(|| own.name.clone());
-        let place = |p: OwnPatch| PatchPlace { name: p.name, lab: Lab { l: p.lab[0], a: p.lab[1], b: p.lab[2] } };
+        let place =
+            |p: OwnPatch| PatchPlace { name: p.name, lab: Lab { l: p.lab[0], a: p.lab[1], b: p.lab[2] } };
         let patches = own.patch.into_iter().map(place).collect();
         let (columns, rows, gap, hinge) = (own.columns, own.rows, own.gap, own.hinge);
         Self { name: own.name, title, columns, rows, gap, hinge, patches }.checked()
@@ -228,8 +231,17 @@ mod tests {
     #[test]
     fn every_built_in_layout_is_read() {
         let names: Vec<String> = Layout::builtin().into_iter().map(|l| l.name).collect();
-        let all =
-            ["classic24", "passport24", "mini24", "nano24", "cameratrax24", "sg140", "dc240", "spyder24", "spyder48"];
+        let all = [
+            "classic24",
+            "passport24",
+            "mini24",
+            "nano24",
+            "cameratrax24",
+            "sg140",
+            "dc240",
+            "spyder24",
+            "spyder48",
+        ];
         assert_eq!(names, all);
     }
 

@@ -18,5 +18,8 @@ pub mod windows;
 
 pub mod builtin_reference;
 
+pub mod detect;
+pub use detect::{Found, Options, Picture, Rejected, Search};
+
 pub mod geometry;
 pub use geometry::{Homography, Quad};

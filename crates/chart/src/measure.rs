@@ -100,7 +100,8 @@ impl Robust {
         let kept: Vec<f64> = values.into_iter().filter(|v| (low..=high).contains(v)).collect();
         let count = kept.len();
         let mean = kept.iter().sum::<f64>() / count.max(1) as f64;
-        let variance = kept.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count.saturating_sub(1).max(1) as f64;
+        let variance =
+            kept.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count.saturating_sub(1).max(1) as f64;
         Self { mean, deviation: variance.sqrt(), count, low, high }
     }
 }
@@ -181,9 +182,8 @@ mod tests {
     fn frame(value: impl Fn(usize, usize, usize) -> f32) -> Mosaic<f32> {
         let cfa = Cfa::parse("RGGB").unwrap();
         let size = Size { width: 40, height: 30 };
-        let samples = (0..1200)
-            .map(|i| value(i % 40, i / 40, cfa.at(i % 40, i / 40).plane().unwrap()))
-            .collect();
+        let samples =
+            (0..1200).map(|i| value(i % 40, i / 40, cfa.at(i % 40, i / 40).plane().unwrap())).collect();
         Mosaic { size, layout: Layout::Cfa(cfa), samples }
     }
 
@@ -226,7 +226,8 @@ mod tests {
 
     #[test]
     fn windows_beyond_the_frame_are_empty() {
-        let m = measure(&frame(|_, _, _| 0.5), [1.0; 3], &[[[50.0, 0.0], [60.0, 0.0], [60.0, 9.0], [50.0, 9.0]]]);
+        let m =
+            measure(&frame(|_, _, _| 0.5), [1.0; 3], &[[[50.0, 0.0], [60.0, 0.0], [60.0, 9.0], [50.0, 9.0]]]);
         assert!(!m[0].is_complete() && m[0].mean.iter().all(|v| v.is_finite()));
     }
 }

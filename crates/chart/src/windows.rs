@@ -11,8 +11,9 @@ pub fn windows(layout: &Layout, corners: &Quad, inset: f64) -> Option<Vec<Quad>>
     let window = |i: usize| {
         let ([left, right], [top, bottom]) =
             (layout.column_edges(i % layout.columns), layout.row_edges(i / layout.columns));
-        let corner =
-            |x: f64, y: f64| map.apply([(left + x * (right - left)) / width, (top + y * (bottom - top)) / height]);
+        let corner = |x: f64, y: f64| {
+            map.apply([(left + x * (right - left)) / width, (top + y * (bottom - top)) / height])
+        };
         [
             corner(inset, inset),
             corner(1.0 - inset, inset),

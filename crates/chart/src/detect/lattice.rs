@@ -83,12 +83,12 @@ fn grown(regions: &[Region], index: &Index, seed: usize, second: usize) -> BTree
     let u = difference(regions[second].centre, regions[seed].centre);
     let v = quarter_turn(regions[seed].covariance, u);
     let mut members = BTreeMap::from([((0, 0), seed), ((1, 0), second)]);
-    let mut queue = vec![(0, 0), (1, 0)];
+    let mut queue: Vec<(i32, i32)> = vec![(0, 0), (1, 0)];
     let mut next = 0;
     while next < queue.len() {
         let (i, j) = queue[next];
         next += 1;
-        for (di, dj) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+        for (di, dj) in [(1i32, 0i32), (-1, 0), (0, 1), (0, -1)] {
             let place = (i + di, j + dj);
             if members.contains_key(&place) || place.0.abs() > 60 || place.1.abs() > 60 {
                 continue;
@@ -148,10 +148,8 @@ fn quarter_turn([a, b, c]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
 
 fn fitted(regions: &[Region], mut members: BTreeMap<(i32, i32), usize>) -> Option<(Lattice, Vec<usize>)> {
     for _ in 0..3 {
-        let pairs: Vec<_> = members
-            .iter()
-            .map(|((i, j), r)| ([f64::from(*i), f64::from(*j)], regions[*r].centre))
-            .collect();
+        let pairs: Vec<_> =
+            members.iter().map(|((i, j), r)| ([f64::from(*i), f64::from(*j)], regions[*r].centre)).collect();
         let spread = |k: usize| {
             let range = pairs.iter().fold([f64::MAX, f64::MIN], |m, p| [m[0].min(p.0[k]), m[1].max(p.0[k])]);
             range[1] - range[0]
@@ -198,16 +196,19 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
+type Placed = (usize, [f64; 2]);
+
 /// Regions by place, to find those near a point.
 struct Index {
     cell: f64,
-    places: BTreeMap<(i32, i32), Vec<(usize, [f64; 2])>>,
+    /// Numbers and centres of the regions of a cell.
+    places: BTreeMap<(i32, i32), Vec<Placed>>,
 }
 
 impl Index {
     fn of(regions: &[Region]) -> Self {
         let cell = 24.0;
-        let mut places: BTreeMap<(i32, i32), Vec<(usize, [f64; 2])>> = BTreeMap::new();
+        let mut places: BTreeMap<(i32, i32), Vec<Placed>> = BTreeMap::new();
         for (i, region) in regions.iter().enumerate() {
             let key = ((region.centre[0] / cell) as i32, (region.centre[1] / cell) as i32);
             places.entry(key).or_default().push((i, region.centre));

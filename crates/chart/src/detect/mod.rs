@@ -57,7 +57,9 @@ pub fn search(picture: &Picture, layouts: &[Layout], options: &Options) -> Searc
     };
     let families = Family::of(layouts);
     let scales = scales(&picture, options);
-    let mut candidates: Vec<Candidate> = scales.par_iter().flat_map_iter(|s| at_scale(s, &families)).collect();
+    let seen: Vec<(usize, Vec<Candidate>)> = scales.par_iter().map(|s| at_scale(s, &families)).collect();
+    let largest = seen.iter().map(|(largest, _)| *largest).max().unwrap_or(0);
+    let mut candidates: Vec<Candidate> = seen.into_iter().flat_map(|(_, candidates)| candidates).collect();
     candidates.sort_by(|a, b| b.rank().total_cmp(&a.rank()));
     let mut result = Search::default();
     let mut tried = 0;
@@ -72,14 +74,14 @@ pub fn search(picture: &Picture, layouts: &[Layout], options: &Options) -> Searc
         match verdict::judge(&picture, candidate, &families) {
             Ok(found) if result.found.iter().any(|f| found::overlap(&f.corners, &found.corners)) => {}
             Ok(found) => result.found.push(found),
-            Err(rejected) => result.note(rejected),
+            Err(rejected) => result.note(*rejected),
         }
     }
     result.found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
     if !result.found.is_empty() {
         result.rejected = None;
     } else if result.rejected.is_none() {
-        result.rejected = Some(Rejected::nothing());
+        result.rejected = Some(Rejected::lattice(largest));
     }
     result
 }
@@ -93,8 +95,11 @@ fn scales(picture: &Picture, options: &Options) -> Vec<Reduced> {
     factors.par_iter().filter_map(|factor| Reduced::of(picture, *factor)).collect()
 }
 
-fn at_scale(picture: &Reduced, families: &[Family]) -> Vec<Candidate> {
+/// Regions of the largest lattice, and what may be charts.
+fn at_scale(picture: &Reduced, families: &[Family]) -> (usize, Vec<Candidate>) {
     let regions = regions::regions(picture);
     let lattices = lattice::lattices(&regions);
-    lattices.iter().flat_map(|lattice| placement::candidates(picture, lattice, families)).collect()
+    let largest = lattices.first().map_or(0, |l| l.members.len());
+    let readings = |lattice| placement::candidates(picture, lattice, families);
+    (largest, lattices.par_iter().flat_map_iter(readings).collect())
 }

@@ -73,12 +73,6 @@ impl Reduced {
         Some(Self { width, height, planes, factor })
     }
 
-    /// Where a point lies in the picture that was reduced.
-    pub(super) fn to_picture(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let k = self.factor as f64;
-        [(x + 0.5) * k - 0.5, (y + 0.5) * k - 0.5]
-    }
-
     /// Whether a point lies on the picture.
     pub(super) fn holds(&self, [x, y]: [f64; 2]) -> bool {
         x >= 0.0 && y >= 0.0 && x <= (self.width - 1) as f64 && y <= (self.height - 1) as f64

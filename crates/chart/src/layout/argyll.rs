@@ -137,7 +137,8 @@ fn labels(first: &str, last: &str) -> Option<Vec<String>> {
 
 /// The table of expected colours, D50.
 fn expected(text: &str) -> Result<Vec<(String, Lab)>, LayoutError> {
-    let mut lines = text.lines().enumerate().skip_while(|(_, line)| !line.trim_start().starts_with("EXPECTED"));
+    let mut lines =
+        text.lines().enumerate().skip_while(|(_, line)| !line.trim_start().starts_with("EXPECTED"));
     let Some((_, head)) = lines.next() else { return Ok(Vec::new()) };
     let is_lab = head.split_whitespace().nth(1) == Some("LAB");
     let mut colours = Vec::new();
@@ -155,7 +156,8 @@ fn expected(text: &str) -> Result<Vec<(String, Lab)>, LayoutError> {
         };
         let [x, y, z] = [value(x)?, value(y)?, value(z)?];
         let xyz = Xyz::new(x / 100.0, y / 100.0, z / 100.0);
-        colours.push(((*name).to_owned(), if is_lab { Lab { l: x, a: y, b: z } } else { xyz.lab(white::D50) }));
+        colours
+            .push(((*name).to_owned(), if is_lab { Lab { l: x, a: y, b: z } } else { xyz.lab(white::D50) }));
     }
     Ok(colours)
 }
