@@ -110,7 +110,8 @@ const TURNS: [[i32; 4]; 8] = [
 
 /// The best reading of a lattice for each family of layouts.
 pub(super) fn candidates(picture: &Reduced, lattice: &Lattice, families: &[Family]) -> Vec<Candidate> {
-    let mut cells = Cells { picture, lattice, seen: HashMap::new() };
+    let occupied = Occupied::of(lattice);
+    let mut cells = Cells { picture, lattice, occupied, seen: HashMap::new() };
     (0..families.len()).filter_map(|family| best(&mut cells, family, &families[family])).collect()
 }
 
@@ -126,7 +127,8 @@ struct Reading {
 
 fn best(cells: &mut Cells, family: usize, known: &Family) -> Option<Candidate> {
     let layout = known.layout();
-    if cells.lattice.members.len() < fewest_seen(layout.columns * layout.rows) {
+    let (members, patches) = (cells.lattice.members.len(), layout.columns * layout.rows);
+    if members < fewest_seen(patches) || (patches as f64) < FEWEST_EXPLAINED * members as f64 {
         return None;
     }
     let columns = known.columns();
@@ -206,8 +208,7 @@ fn read(
     let is_member = |i: &usize| {
         let p = place(*i);
         let near = p.map(f64::round);
-        (0..2).all(|k| (p[k] - near[k]).abs() < 0.15)
-            && cells.lattice.members.contains_key(&(near[0] as i32, near[1] as i32))
+        (0..2).all(|k| (p[k] - near[k]).abs() < 0.15) && cells.occupied.holds(near[0] as i32, near[1] as i32)
     };
     let seen = (0..patches).filter(is_member).count();
     let explained = FEWEST_EXPLAINED * cells.lattice.members.len() as f64;
@@ -219,10 +220,40 @@ fn read(
     Some(Reading { turn, mirrored, origin, fit: family.expected.fit(|i| colours[i]), seen })
 }
 
+/// Which places of a lattice have regions.
+struct Occupied {
+    first: [i32; 2],
+    width: i32,
+    places: Vec<bool>,
+}
+
+impl Occupied {
+    fn of(lattice: &Lattice) -> Self {
+        let (mut first, mut last) = ([i32::MAX; 2], [i32::MIN; 2]);
+        for (x, y) in lattice.members.keys() {
+            first = [first[0].min(*x), first[1].min(*y)];
+            last = [last[0].max(*x), last[1].max(*y)];
+        }
+        let (width, height) = (last[0] - first[0] + 1, last[1] - first[1] + 1);
+        let mut places = vec![false; (width * height) as usize];
+        for (x, y) in lattice.members.keys() {
+            places[((y - first[1]) * width + x - first[0]) as usize] = true;
+        }
+        Self { first, width, places }
+    }
+
+    fn holds(&self, x: i32, y: i32) -> bool {
+        let (x, y) = (x - self.first[0], y - self.first[1]);
+        let inside = x >= 0 && x < self.width && y >= 0;
+        inside && self.places.get((y * self.width + x) as usize).copied().unwrap_or(false)
+    }
+}
+
 /// Colours at places of a lattice, each looked up once.
 struct Cells<'a> {
     picture: &'a Reduced,
     lattice: &'a Lattice,
+    occupied: Occupied,
     /// By eighths of a step.
     seen: HashMap<(i32, i32), Option<[f64; 3]>>,
 }
