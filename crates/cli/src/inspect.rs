@@ -6,11 +6,11 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use darkroot::{Inspection, ProfileStore, Settings};
+use clap::builder::TypedValueParser;
+use darkroot::{Inspection, Key, ProfileStore, Settings, recipe};
 use raw::Decoder;
 
-use crate::Outcome;
-use crate::develop::DecoderName;
+use crate::{Outcome, picture};
 
 /// Say what a raw file is: camera, levels, white balance, matrices, clipping
 #[derive(Debug, Args)]
@@ -36,8 +36,12 @@ pub(crate) struct Inspect {
     overwrite: bool,
 
     /// Library that decodes the samples
-    #[arg(long, value_enum, default_value = "flashraw")]
-    decoder: DecoderName,
+    #[arg(long, default_value = "flashraw", value_parser = decoder())]
+    decoder: Decoder,
+}
+
+fn decoder() -> impl TypedValueParser<Value = Decoder> {
+    picture::words(Key::Decoder).try_map(|text| recipe::text::decoder(&text))
 }
 
 impl Inspect {
@@ -62,7 +66,7 @@ impl Inspect {
                 }
             });
         }
-        let settings = Settings { decoder: Decoder::from(self.decoder), ..Settings::default() };
+        let settings = Settings { decoder: self.decoder, ..Settings::default() };
         let store = ProfileStore::user_folder()
             .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
         let mut outcome = Outcome::Done;

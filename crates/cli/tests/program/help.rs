@@ -2,7 +2,7 @@
 
 use super::*;
 
-const COMMANDS: [&str; 4] = ["develop", "inspect", "completions", "man"];
+const COMMANDS: [&str; 5] = ["develop", "inspect", "recipe", "completions", "man"];
 
 /// Long options of a command, as its help has them.
 fn options(desk: &Desk, command: &str) -> Vec<String> {
@@ -14,7 +14,7 @@ fn options(desk: &Desk, command: &str) -> Vec<String> {
         .map(str::trim_start)
         .filter(|line| line.starts_with('-'))
         .filter_map(|line| line.split_whitespace().find(|word| word.starts_with("--")))
-        .map(|word| word.trim_end_matches(',').to_owned())
+        .map(|word| word.split([',', '[']).next().unwrap_or(word).to_owned())
         .collect();
     found.sort();
     found.dedup();

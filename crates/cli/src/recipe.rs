@@ -1,0 +1,76 @@
+//! `darkroot recipe`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::Args;
+use darkroot::{Effective, Key};
+use serde_json::{Map, Value, json};
+
+use crate::Outcome;
+use crate::picture::{self, Picture};
+
+/// Show which settings hold for files, and where each is from
+///
+/// Prints a recipe for each FILE, or for the current folder: what `darkroot develop` with the same options would
+/// use. Save one and give it to --recipe.
+#[derive(Debug, Args)]
+pub(crate) struct Recipe {
+    /// Raw files; they need not exist
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+
+    #[command(flatten)]
+    picture: Picture,
+
+    /// A line of JSON for each file
+    #[arg(long)]
+    json: bool,
+}
+
+impl Recipe {
+    pub(crate) fn run(self) -> Result<Outcome> {
+        let mut layers = self.picture.layers()?;
+        let mut recipes = Vec::new();
+        for file in &self.files {
+            recipes.push((Some(file.as_path()), layers.for_file(file)?));
+        }
+        if self.files.is_empty() {
+            recipes.push((None, layers.for_folder(Path::new("."))?));
+        }
+        let mut out = std::io::stdout().lock();
+        for (number, (file, effective)) in recipes.iter().enumerate() {
+            if self.json {
+                writeln!(out, "{}", as_json(*file, effective))?;
+                continue;
+            }
+            if number > 0 {
+                writeln!(out)?;
+            }
+            let title = file.map_or("this folder".to_owned(), |f| f.display().to_string());
+            writeln!(out, "# {}", title.replace(char::is_control, "?"))?;
+            write!(out, "{}", effective.to_toml(picture::shown))?;
+        }
+        Ok(Outcome::Done)
+    }
+}
+
+fn as_json(file: Option<&Path>, effective: &Effective) -> Value {
+    let one = |key: Key| {
+        let (text, origin) = effective.get(key);
+        let mut value = json!({ "value": value(key, text), "from": origin.name() });
+        if let Some(path) = origin.path() {
+            value["path"] = path.to_string_lossy().into();
+        }
+        (key.name().to_owned(), value)
+    };
+    let settings: Map<String, Value> = Key::ALL.into_iter().map(one).collect();
+    json!({ "file": file.map(Path::to_string_lossy), "settings": settings })
+}
+
+/// Numbers and switches as such.
+fn value(key: Key, text: &str) -> Value {
+    let bare = key.is_number() || key.is_switch();
+    bare.then(|| serde_json::from_str(text).ok()).flatten().unwrap_or_else(|| text.into())
+}

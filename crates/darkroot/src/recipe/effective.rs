@@ -1,0 +1,204 @@
+//! What holds for one file: a value for every key, and where each is from.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use encode::Format;
+
+use super::{Key, Layer, Origin, RecipeError, text};
+use crate::naming::{NamingError, Target};
+use crate::settings::Settings;
+
+/// Every key with its text and its origin.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Effective {
+    values: BTreeMap<Key, (String, Origin)>,
+}
+
+impl Default for Effective {
+    /// The defaults.
+    fn default() -> Self {
+        let value = |key: Key| (key, (key.default_text().to_owned(), Origin::Default));
+        Self { values: Key::ALL.map(value).into() }
+    }
+}
+
+impl Effective {
+    /// What the layer says counts more than what was there.
+    pub(super) fn lay(&mut self, layer: &Layer) {
+        for (key, text) in layer.iter() {
+            self.values.insert(key, (text.to_owned(), layer.origin.clone()));
+        }
+    }
+
+    /// The text of a key and where it is from.
+    pub fn get(&self, key: Key) -> (&str, &Origin) {
+        // Every key is there from the beginning.
+        self.values.get(&key).map_or((key.default_text(), &Origin::Default), |(text, origin)| (text, origin))
+    }
+
+    /// The settings that the texts mean.
+    ///
+    /// # Errors
+    /// A text that is no value of its key; none when this is from [`Layers`](super::Layers).
+    pub fn settings(&self) -> Result<Settings, RecipeError> {
+        let mut settings = Settings::default();
+        for (key, (text, _)) in &self.values {
+            let key = *key;
+            text::apply(key, text, &mut settings).map_err(|wrong| RecipeError::Flag { key, wrong })?;
+        }
+        Ok(settings)
+    }
+
+    /// The format of the picture: `--format`, else what the ending of `-o` says, else what recipes say, else
+    /// what suits the settings.
+    ///
+    /// # Errors
+    /// Nobody says a format but a name whose ending is none.
+    pub fn format(&self, target: &Target, settings: &Settings, flags: &Layer) -> Result<Format, NamingError> {
+        let asked = settings.format;
+        let by_flag = flags.get(Key::Format).is_some_and(|text| text != "auto");
+        match (asked, target.format()) {
+            (Some(format), _) if by_flag => Ok(format),
+            (_, Ok(Some(format))) => Ok(format),
+            (Some(format), _) => Ok(format),
+            (None, Ok(None)) => Ok(settings.default_format()),
+            (None, Err(error)) => Err(error),
+        }
+    }
+
+    /// The files that a value of this is from, with the keys that each of them decided; the weakest first.
+    pub fn files(&self) -> Vec<(&Origin, Vec<Key>)> {
+        let mut files: Vec<(&Origin, Vec<Key>)> = Vec::new();
+        for (key, (_, origin)) in &self.values {
+            if origin.path().is_none() {
+                continue;
+            }
+            match files.iter_mut().find(|(o, _)| *o == origin) {
+                Some((_, keys)) => keys.push(*key),
+                None => files.push((origin, vec![*key])),
+            }
+        }
+        // A folder that is deeper counts more, and its path is longer.
+        files.sort_by_key(|(origin, _)| match origin {
+            Origin::Default | Origin::Flag => (0, 0),
+            Origin::Folder(path) => (1, path.components().count()),
+            Origin::Recipe(_) => (2, 0),
+            Origin::Sidecar(_) => (3, 0),
+        });
+        files
+    }
+
+    /// Name and text of every key: all that another process must know to make the same picture.
+    pub fn texts(&self) -> BTreeMap<String, String> {
+        self.values.iter().map(|(key, (text, _))| (key.name().to_owned(), text.clone())).collect()
+    }
+
+    /// What [`texts`](Self::texts) gave; keys that are missing have their defaults. Where the values were from
+    /// is not known any more: they count as flags.
+    ///
+    /// # Errors
+    /// A name that is no key, or a text that is no value of it.
+    pub fn from_texts(texts: &BTreeMap<String, String>) -> Result<Self, RecipeError> {
+        let named = |(name, text): (&String, &String)| {
+            let key = Key::from_name(name).ok_or_else(|| RecipeError::Name { name: name.clone() })?;
+            Ok((key, text.clone()))
+        };
+        let values: Vec<(Key, String)> = texts.iter().map(named).collect::<Result<_, RecipeError>>()?;
+        let mut effective = Self::default();
+        effective.lay(&Layer::flags(values)?);
+        Ok(effective)
+    }
+
+    /// As a recipe file, each line with where its value is from. `shown` says how a path is written for people.
+    pub fn to_toml(&self, shown: impl Fn(&Path) -> String) -> String {
+        /// Columns of a value, so that most comments stand below each other.
+        const WIDTH: usize = 34;
+        let mut out = String::new();
+        for (key, (text, origin)) in &self.values {
+            let line = format!("{key} = {}", written(*key, text));
+            let from = origin.path().map_or_else(|| origin.to_string(), &shown);
+            let from: String = from.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+            let _ = writeln!(out, "{line:WIDTH$}  # {from}");
+        }
+        out
+    }
+}
+
+/// A value as TOML has it.
+fn written(key: Key, text: &str) -> String {
+    let bare = key.is_switch() || key.is_number() && text.parse::<f64>().is_ok_and(f64::is_finite);
+    if bare {
+        return text.to_owned();
+    }
+    // A recipe may be put anywhere, and what is relative in it is relative to its place.
+    let file = key == Key::Profile && !matches!(text, "auto" | "matrix");
+    let absolute = file.then(|| std::path::absolute(text).ok()).flatten();
+    let text = absolute.as_deref().and_then(Path::to_str).unwrap_or(text);
+    toml::Value::from(text).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(values: &[(Key, &str)]) -> (Effective, Layer) {
+        let flags = Layer::flags(values.iter().map(|(key, text)| (*key, (*text).to_owned()))).unwrap();
+        let mut effective = Effective::default();
+        effective.lay(&flags);
+        (effective, flags)
+    }
+
+    #[test]
+    fn texts_make_the_same_settings_in_another_process() {
+        let (effective, _) =
+            with(&[(Key::Exposure, "0.50"), (Key::WhiteBalance, "5200K,+8"), (Key::Bits, "16")]);
+        let texts = effective.texts();
+        assert_eq!((texts.len(), texts["exposure"].as_str()), (Key::ALL.len(), "0.5"));
+        let again = Effective::from_texts(&texts).unwrap();
+        assert_eq!(again.texts(), texts);
+        let debug = |e: &Effective| format!("{:?}", e.settings().unwrap());
+        assert_eq!(debug(&again), debug(&effective));
+    }
+
+    #[test]
+    fn texts_that_mean_nothing_are_refused() {
+        let one = |name: &str, text: &str| [(name.to_owned(), text.to_owned())].into();
+        assert!(Effective::from_texts(&one("sharpen", "1")).is_err());
+        assert!(Effective::from_texts(&one("look", "film")).is_err());
+        assert_eq!(Effective::from_texts(&BTreeMap::new()).unwrap(), Effective::default());
+    }
+
+    #[test]
+    fn the_format_is_what_the_flag_says_then_the_ending_then_a_recipe() {
+        let nobody = Layer::flags([]).unwrap();
+        let format = |recipe: &str, flag: Option<&str>, target: &str| {
+            let (mut effective, _) = with(&[(Key::Format, recipe)]);
+            let flags = flag.map(|f| Layer::flags([(Key::Format, f.to_owned())]).unwrap());
+            let flags = flags.as_ref().unwrap_or(&nobody);
+            effective.lay(flags);
+            effective.format(&Target::parse(target), &effective.settings().unwrap(), flags)
+        };
+        assert_eq!(format("auto", None, "out/"), Ok(Format::Jpeg));
+        assert_eq!(format("png", None, "out/"), Ok(Format::Png));
+        assert_eq!(format("png", None, "o.tif"), Ok(Format::Tiff));
+        assert_eq!(format("png", None, "{stem}.{ext}"), Ok(Format::Png));
+        assert_eq!(format("png", None, "o.bin"), Ok(Format::Png));
+        assert_eq!(format("png", Some("webp"), "o.tif"), Ok(Format::Webp));
+        assert_eq!(format("png", Some("auto"), "out/"), Ok(Format::Jpeg));
+        assert!(format("auto", None, "o.bin").is_err());
+    }
+
+    #[test]
+    fn a_recipe_that_is_written_can_be_read() {
+        let (effective, _) =
+            with(&[(Key::WhiteBalance, "2.1,1,1.5"), (Key::Profile, "a \"b\".toml"), (Key::Exposure, "-1")]);
+        let table: toml::Table = effective.to_toml(|p| p.display().to_string()).parse().unwrap();
+        assert_eq!(table.len(), Key::ALL.len());
+        assert_eq!(table["exposure"].as_integer(), Some(-1));
+        assert_eq!(table["white-balance"].as_str(), Some("2.1,1,1.5"));
+        assert!(Path::new(table["profile"].as_str().unwrap()).is_absolute());
+        assert!(table["profile"].as_str().unwrap().ends_with("a \"b\".toml"));
+    }
+}

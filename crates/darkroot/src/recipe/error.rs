@@ -1,0 +1,107 @@
+//! What can be wrong with a recipe. Each message names the place, what is wrong and what is allowed.
+
+use std::path::PathBuf;
+
+use super::key::Key;
+use super::layers::FOLDER_FILE;
+use super::text::NotAValue;
+
+/// Settings that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecipeError {
+    /// The file cannot be read.
+    #[error("{path}: the recipe cannot be read: {reason}", path = path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// The file is no TOML.
+    #[error("{path}:{line}: this is not TOML (`name = value`, text in quotes): {reason}", path = path.display())]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// What the reader stumbled over.
+        reason: String,
+    },
+    /// A name that is no setting.
+    #[error("{path}:{line}: `{name}` is no setting; {}", instead(*nearest), path = path.display())]
+    Key {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// The name.
+        name: String,
+        /// What may have been meant.
+        nearest: Option<Key>,
+    },
+    /// A value of the wrong type.
+    #[error("{path}:{line}: `{name}` cannot be {found}; write {allowed}", path = path.display())]
+    Type {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// The name.
+        name: String,
+        /// What it is, in words.
+        found: &'static str,
+        /// What it can be, in words.
+        allowed: String,
+    },
+    /// A value that the key does not have.
+    #[error("{path}:{line}: `{key}`: {wrong}", path = path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// The key.
+        key: Key,
+        /// What is wrong with it.
+        wrong: NotAValue,
+    },
+    /// A value that the flag does not have.
+    #[error("`--{key}`: {wrong}")]
+    Flag {
+        /// The key.
+        key: Key,
+        /// What is wrong with it.
+        wrong: NotAValue,
+    },
+    /// `root` where it means nothing.
+    #[error(
+        "{path}:{line}: `root` belongs into a {FOLDER_FILE}, where it ends the search in the folders above; leave it \
+         out here", path = path.display()
+    )]
+    Root {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+    },
+    /// A profile where a recipe should be.
+    #[error("{path}: is a camera profile, not a recipe; name it with `--profile`", path = path.display())]
+    Profile {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A name that is no setting, not from a file.
+    #[error("`{name}` is no setting; {}", instead(None))]
+    Name {
+        /// The name.
+        name: String,
+    },
+}
+
+fn instead(nearest: Option<Key>) -> String {
+    match nearest {
+        Some(key) => format!("did you mean `{key}`?"),
+        None => format!("there are {}", Key::names()),
+    }
+}

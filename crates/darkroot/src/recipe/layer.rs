@@ -1,0 +1,95 @@
+//! One layer of settings, and where it is from.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::text;
+use super::{Key, RecipeError};
+
+/// Where a value comes from, in rising priority.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// Nobody said anything.
+    Default,
+    /// A `darkroot.toml` in the file's folder or above.
+    Folder(PathBuf),
+    /// The recipe that was named with `--recipe`.
+    Recipe(PathBuf),
+    /// The command line.
+    Flag,
+    /// The file's own `.darkroot.toml`.
+    Sidecar(PathBuf),
+}
+
+impl Origin {
+    /// One word for machines: default, folder, recipe, flag or sidecar.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Default => "default",
+            Self::Folder(_) => "folder",
+            Self::Recipe(_) => "recipe",
+            Self::Flag => "flag",
+            Self::Sidecar(_) => "sidecar",
+        }
+    }
+
+    /// The file that says it, if it is one.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Folder(path) | Self::Recipe(path) | Self::Sidecar(path) => Some(path),
+            Self::Default | Self::Flag => None,
+        }
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.path() {
+            Some(path) => write!(f, "{}", path.display()),
+            None if *self == Self::Flag => f.write_str("command line"),
+            None => f.write_str("default"),
+        }
+    }
+}
+
+/// What one place says: texts as on the command line, each of them checked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layer {
+    /// Where it is from.
+    pub origin: Origin,
+    values: BTreeMap<Key, String>,
+}
+
+impl Layer {
+    /// What the command line says.
+    ///
+    /// # Errors
+    /// A text that is no value of its key.
+    pub fn flags(values: impl IntoIterator<Item = (Key, String)>) -> Result<Self, RecipeError> {
+        let mut layer = Self::empty(Origin::Flag);
+        for (key, text) in values {
+            layer.set(key, &text).map_err(|wrong| RecipeError::Flag { key, wrong })?;
+        }
+        Ok(layer)
+    }
+
+    pub(super) fn empty(origin: Origin) -> Self {
+        Self { origin, values: BTreeMap::new() }
+    }
+
+    pub(super) fn set(&mut self, key: Key, text: &str) -> Result<(), text::NotAValue> {
+        self.values.insert(key, text::checked(key, text)?);
+        Ok(())
+    }
+
+    /// What it says about a key, if anything.
+    pub fn get(&self, key: Key) -> Option<&str> {
+        self.values.get(&key).map(String::as_str)
+    }
+
+    /// All that it says.
+    pub fn iter(&self) -> impl Iterator<Item = (Key, &str)> {
+        self.values.iter().map(|(key, text)| (*key, text.as_str()))
+    }
+}
