@@ -99,8 +99,8 @@ def de2000(one, two):
     return np.sqrt((dl / sl) ** 2 + (dc / sc) ** 2 + (big_dh / sh) ** 2 + rt * dc / sc * big_dh / sh)
 
 
-def judge(what, found, wanted):
+def judge(what, found, wanted, limit=LIMIT):
     """Prints how far two sets of XYZ are apart; whether the mean is within the limit."""
     apart = de2000(lab_of_xyz(found), lab_of_xyz(wanted))
     print(f"{what}: dE2000 mean {apart.mean():.3f}, max {apart.max():.3f}")
-    return apart.mean() <= LIMIT
+    return apart.mean() <= limit

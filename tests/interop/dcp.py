@@ -2,10 +2,11 @@
 """RawTherapee with an exported DCP gives Darkroot's colours: dcp.py DARKROOT
 
 A raw file of the chart's patches is made, developed by rawtherapee-cli with the DCP alone (no tone curve, no look),
-and its patches, scaled to the same mean luminance, are compared with `darkroot profile apply`.
+and its patches, scaled to the same mean luminance, are compared with `darkroot profile apply`. With DCPs of one light, and
+with DCPs of two, under each of them and under 4000 K, where both programs interpolate.
 
 Needs rawtherapee-cli (Debian: rawtherapee), transicc (Debian: liblcms2-utils) and numpy; says which is missing. Exit
-code 1 when a mean is above 1 dE2000.
+code 1 when a mean is above 1 dE2000, or above 0.5 where it interpolates: with one of both lights alone it were 0.9.
 """
 import struct
 import subprocess
@@ -17,6 +18,7 @@ import chart
 import numpy as np
 
 OUTPUT = Path("/usr/share/rawtherapee/iccprofiles/output/RTv4_Large.icc")
+KELVIN = {17: 2856, 21: 6504}  # By LightSource of Exif.
 SIDE = 64  # pixels of a patch
 NEUTRAL = {"D65": [0.47, 1.0, 0.68], "A": [0.75, 1.0, 0.35]}
 RECIPE = """[Version]
@@ -132,32 +134,66 @@ def developed(path):
     return np.array([[float(v) for v in line.split()] for line in out.split("\n") if line.strip()]) / 100
 
 
+def matrix(dcp, tag):
+    above, below = np.array(dcp[tag], float).reshape(9, 2).T
+    return (above / below).reshape(3, 3)
+
+
+def neutral_between(dcp, kelvin):
+    """What the color matrices of a DCP with two lights say of a black body's white: DNG 1.7.1, chapter 6."""
+    low, high = (1 / KELVIN[dcp[tag][0]] for tag in (50778, 50779))
+    share = (1 / kelvin - high) / (low - high)
+    mixed = share * matrix(dcp, 50721) + (1 - share) * matrix(dcp, 50722)
+    # Kim and others, 2002: the Planckian locus below 4000 K.
+    t = 1e3 / kelvin
+    x = -0.2661239 * t**3 - 0.2343589 * t**2 + 0.8776956 * t + 0.179910
+    y = -0.9549476 * x**3 - 1.37418593 * x**2 + 2.09137015 * x - 0.16748867
+    neutral = mixed @ [x / y, 1, (1 - x - y) / y]
+    return neutral / neutral[1]
+
+
+class Bench:
+    """RawTherapee, and a folder for its files."""
+
+    def __init__(self, program, folder):
+        self.program, self.folder, self.dcp = program, folder, folder / "camera.dcp"
+
+    def export(self, camera, lights):
+        arguments = ["profile", "export", camera, "--to", "dcp", "-o", str(self.dcp), "--overwrite", "--light", *lights]
+        for light in lights:
+            arguments += ["--neutral", ",".join(map(str, NEUTRAL[light]))]
+        chart.darkroot(self.program, *arguments)
+        return read_tiff(self.dcp.read_bytes())
+
+    def agrees(self, what, camera, light, neutral, table="true", limit=chart.LIMIT):
+        """Whether RawTherapee's colours under a light are Darkroot's."""
+        rgb = chart.chart_rgb(self.program, camera, light)
+        wanted = chart.apply(self.program, camera, light, rgb)
+        color_matrix = matrix(read_tiff(self.dcp.read_bytes()), 50721).ravel().tolist()
+        raw, recipe, out = (self.folder / f"chart.{kind}" for kind in ("dng", "pp3", "tif"))
+        raw.write_bytes(dng(camera, rgb, neutral, color_matrix))
+        recipe.write_text(RECIPE.format(dcp=self.dcp, table=table))
+        command = ["rawtherapee-cli", "-Y", "-o", out, "-p", recipe, "-t", "-b16", "-c", raw]
+        subprocess.run(command, check=True, capture_output=True)
+        found = developed(out)
+        found *= wanted[:, 1].mean() / found[:, 1].mean()
+        return chart.judge(f"{camera}, {what}", found, wanted, limit)
+
+
 if __name__ == "__main__":
     chart.need("rawtherapee-cli", "rawtherapee")
     chart.need("transicc", "liblcms2-utils")
-    program, good = sys.argv[1], True
+    good = True
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+        bench = Bench(sys.argv[1], Path(name))
         for camera in chart.CAMERAS:
-            for light in ["D65", "A"]:
-                neutral = np.array(NEUTRAL[light])
-                words = ",".join(str(v) for v in neutral)
-                profile = ["profile", "export", camera, "--light", light, "--to", "dcp", "--neutral", words]
-                chart.darkroot(program, *profile, "-o", str(folder / "camera.dcp"), "--overwrite")
-                matrix = np.array(read_tiff((folder / "camera.dcp").read_bytes())[50721]).reshape(9, 2)
-                rgb = chart.chart_rgb(program, camera, light)
-                wanted = chart.apply(program, camera, light, rgb)
-                (folder / "chart.dng").write_bytes(dng(camera, rgb, neutral, list(matrix[:, 0] / matrix[:, 1])))
-                for table in ["true", "false"]:
-                    recipe = folder / "chart.pp3"
-                    recipe.write_text(RECIPE.format(dcp=folder / "camera.dcp", table=table))
-                    out = folder / "chart.tif"
-                    command = ["rawtherapee-cli", "-Y", "-o", out, "-p", recipe, "-t", "-b16", "-c", folder / "chart.dng"]
-                    subprocess.run(command, check=True, capture_output=True)
-                    found = developed(out)
-                    found *= wanted[:, 1].mean() / found[:, 1].mean()
-                    if table == "true":
-                        good &= chart.judge(f"{camera}, {light}, RawTherapee", found, wanted)
-                    else:
-                        chart.judge(f"{camera}, {light}, RawTherapee by the matrix alone", found, wanted)
+            for light, neutral in NEUTRAL.items():
+                bench.export(camera, [light])
+                good &= bench.agrees(f"{light}, RawTherapee", camera, light, np.array(neutral))
+                bench.agrees(f"{light}, RawTherapee by the matrix alone", camera, light, np.array(neutral), "false")
+            dcp = bench.export(camera, list(NEUTRAL))
+            for light, neutral in NEUTRAL.items():
+                good &= bench.agrees(f"D65 and A, RawTherapee under {light}", camera, light, np.array(neutral))
+            between = neutral_between(dcp, 4000)
+            good &= bench.agrees("D65 and A, RawTherapee at 4000 K", camera, "4000K", between, limit=0.5)
     sys.exit(0 if good else 1)

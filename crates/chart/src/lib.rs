@@ -8,6 +8,9 @@ pub use layout::{Layout, PatchPlace};
 pub mod measure;
 pub use measure::{Measurement, measure};
 
+pub mod sharpness;
+pub use sharpness::{EdgeWidth, edge_width};
+
 pub mod unevenness;
 pub use unevenness::{Slope, glare};
 

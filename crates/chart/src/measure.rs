@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::Quad;
 
 /// Light above this share of a channel's saturation counts as clipped.
-const CLIPPED: f32 = 0.98;
+pub(crate) const CLIPPED: f32 = 0.98;
 /// Samples farther from the median than this many standard deviations are dust, glints or dirt.
 const OUTLIER: f64 = 4.0;
 /// Median absolute deviation to standard deviation for normal noise.
@@ -136,7 +136,11 @@ fn slope(samples: &[Sample], robust: &Robust) -> f64 {
 
 /// Calls `take` with column, row, channel and value of every sample whose pixel centre lies inside of a convex
 /// window.
-fn for_each_inside(light: &Mosaic<f32>, window: &Quad, mut take: impl FnMut(usize, usize, usize, f32)) {
+pub(crate) fn for_each_inside(
+    light: &Mosaic<f32>,
+    window: &Quad,
+    mut take: impl FnMut(usize, usize, usize, f32),
+) {
     let (width, height) = (light.size.width, light.size.height);
     let range = |axis: usize, length: usize| {
         let values = window.iter().map(|p| p[axis]);

@@ -75,6 +75,8 @@ impl Chart {
                             "rotation": c.rotation_degrees,
                             "patch_pixels": c.patch_pixels,
                             "gap": c.gap,
+                            "grid": [c.columns, c.rows],
+                            "centres": (0..c.columns * c.rows).map(|i| c.centre(i)).collect::<Vec<_>>(),
                         })
                     })
                     .collect();

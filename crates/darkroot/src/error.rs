@@ -87,6 +87,19 @@ pub enum Error {
         /// What could have been given.
         names: String,
     },
+    /// Two shots under one light at one exposure, and nobody said what they are for.
+    #[error(
+        "{one} and {other} were both taken under {light} and at one exposure; add `--average` to take the mean of them, \
+         or give the light of each with its own `--light`", one = one.display(), other = other.display()
+    )]
+    SeveralShots {
+        /// One of the shots.
+        one: PathBuf,
+        /// Another.
+        other: PathBuf,
+        /// Name of the light.
+        light: String,
+    },
     /// A model cannot be fitted.
     #[error("the profile for {light} cannot be made: {what}")]
     Fit {
@@ -126,6 +139,12 @@ pub enum Error {
         path: PathBuf,
         /// What the system says, with what to do.
         reason: String,
+    },
+    /// The disk of the output is full.
+    #[error("{path}: cannot be written: the disk is full; make room and run again", path = path.display())]
+    DiskFull {
+        /// The output.
+        path: PathBuf,
     },
     /// The format cannot hold the picture.
     #[error("{path}: {source}", path = path.display())]
@@ -169,13 +188,13 @@ impl Error {
     }
 
     pub(crate) fn write(path: &Path, error: &io::Error) -> Self {
+        if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) {
+            return Self::DiskFull { path: path.to_owned() };
+        }
         let reason = match error.kind() {
             io::ErrorKind::NotFound => "its folder does not exist; create it first".to_owned(),
             io::ErrorKind::PermissionDenied => {
                 "permission denied; choose another folder with `-o`".to_owned()
-            }
-            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-                "the disk is full; make room and run again".to_owned()
             }
             io::ErrorKind::ReadOnlyFilesystem => {
                 "the disk is read-only; choose another folder with `-o`".to_owned()

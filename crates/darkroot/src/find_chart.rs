@@ -19,6 +19,8 @@ const LONGEST: usize = 1000;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Place {
     pub(crate) corners: Quad,
+    /// Whole patches.
+    pub(crate) patches: Vec<Quad>,
     /// The part of each patch that is measured.
     pub(crate) windows: Vec<Quad>,
     pub(crate) confidence: f64,
@@ -75,14 +77,16 @@ pub(crate) fn best(view: &View, layout: &Layout) -> Result<Place, String> {
 
 /// A chart at corners given by hand.
 pub(crate) fn by_hand(layout: &Layout, corners: &Quad) -> Result<Place, String> {
-    let windows = windows::windows(layout, corners, INSET)
-        .ok_or_else(|| "the corners are no quadrilateral; give them clockwise from patch 1".to_owned())?;
-    Ok(Place { corners: *corners, windows, confidence: 1.0 })
+    let of_patches = |inset: f64| {
+        windows::windows(layout, corners, inset)
+            .ok_or_else(|| "the corners are no quadrilateral; give them clockwise from patch 1".to_owned())
+    };
+    Ok(Place { corners: *corners, patches: of_patches(0.0)?, windows: of_patches(INSET)?, confidence: 1.0 })
 }
 
 fn place(found: &Found) -> Place {
-    let windows = (0..found.columns * found.rows).map(|i| found.patch(i, INSET)).collect();
-    Place { corners: found.corners, windows, confidence: found.confidence }
+    let all = |inset: f64| (0..found.columns * found.rows).map(|i| found.patch(i, inset)).collect();
+    Place { corners: found.corners, patches: all(0.0), windows: all(INSET), confidence: found.confidence }
 }
 
 /// Writes a PNG of the picture with grid, windows and numbers over it; windows with clipped samples are red.

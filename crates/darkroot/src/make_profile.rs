@@ -7,13 +7,16 @@ use profile::{Kind, Origin, Profile, ProfileCamera};
 
 use crate::calibrate::{Calibrated, Choice, MeasuredPatch, calibrate};
 use crate::light::NamedLight;
-use crate::shot::{Shot, ShotOptions, View, open};
+use crate::shot::{Gate, Shot, ShotOptions, Verdict, View, agreement, linearity, open};
 use crate::{Error, Settings};
+
+/// Shots nearer than this in light, in stops, are shots at one exposure.
+const ONE_EXPOSURE: f64 = 0.2;
 
 /// What a profile is made from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChartRequest {
-    /// Shots of the chart with the light of each. Shots under one light are averaged.
+    /// Shots of the chart with the light of each. Those under one light are an exposure bracket, or `average` is set.
     pub shots: Vec<(PathBuf, NamedLight)>,
     /// The chart.
     pub layout: Layout,
@@ -25,6 +28,9 @@ pub struct ChartRequest {
     pub reference_sha256: String,
     /// How the shots are treated.
     pub options: ShotOptions,
+    /// Take the mean of shots under one light at one exposure. Without it they are refused, because two lights may
+    /// have been meant.
+    pub average: bool,
     /// The model; the best one if not given.
     pub kind: Option<Kind>,
     /// Day that the profile carries, YYYY-MM-DD; may be empty.
@@ -38,9 +44,8 @@ pub struct MadeLight {
     pub light: NamedLight,
     /// The shots under it.
     pub shots: Vec<Shot>,
-    /// Largest departure from proportionality between shots of different exposure times, relative; none where there
-    /// is nothing to compare.
-    pub nonlinearity: Option<f64>,
+    /// What was checked between the shots: `linearity` of an exposure bracket, `agreement` of what is averaged.
+    pub gates: Vec<Gate>,
     /// The calibration.
     pub calibrated: Calibrated,
     /// The first shot, to look at.
@@ -87,12 +92,12 @@ pub fn make_profile(request: &ChartRequest, settings: &Settings) -> Result<MadeP
         let light: NamedLight = (*light).clone();
         let (shots, mut views): (Vec<Shot>, Vec<View>) =
             opened.into_iter().map(|(shot, view, _)| (shot, view)).unzip();
+        let gates = between(&shots, &light, request)?;
         let patches = averaged(&shots);
         let choice = Choice { kind: request.kind };
         let calibrated = calibrate(&light, &patches, &choice)
             .map_err(|e| Error::Fit { light: name.to_owned(), what: e.to_string() })?;
-        let nonlinearity = nonlinearity(&shots);
-        lights.push(MadeLight { light, shots, nonlinearity, calibrated, view: views.swap_remove(0) });
+        lights.push(MadeLight { light, shots, gates, calibrated, view: views.swap_remove(0) });
     }
     let camera = camera.ok_or(Error::NoLight)?;
     let calibrations = lights.iter().map(|l| l.calibrated.calibration.clone()).collect();
@@ -160,18 +165,61 @@ fn ratio(one: &[MeasuredPatch], other: &[MeasuredPatch]) -> f64 {
     ratios.get(ratios.len() / 2).copied().unwrap_or(1.0)
 }
 
-/// How far shots of different exposure are from being the same picture scaled: over the patches, the largest departure
-/// of the ratio of green between two shots from its median.
-fn nonlinearity(shots: &[Shot]) -> Option<f64> {
-    let (first, others) = shots.split_first()?;
-    let different = |s: &&Shot| (ratio(&first.patches, &s.patches).log2()).abs() > 0.2;
-    let worst = others.iter().filter(different).map(|shot| {
-        let scale = ratio(&first.patches, &shot.patches);
-        let off = |(a, b): (&MeasuredPatch, &MeasuredPatch)| {
-            let known = a.excluded.is_none() && b.excluded.is_none();
-            if known { (a.rgb[1] / (b.rgb[1] * scale) - 1.0).abs() } else { 0.0 }
+/// Checks of the shots under one light against the first of them.
+fn between(shots: &[Shot], light: &NamedLight, request: &ChartRequest) -> Result<Vec<Gate>, Error> {
+    let Some((first, others)) = shots.split_first() else { return Ok(Vec::new()) };
+    let stops = |s: &Shot| ratio(&first.patches, &s.patches).log2();
+    if !request.average
+        && let Some((one, other)) = twins(shots, stops)
+    {
+        return Err(Error::SeveralShots {
+            one: one.path.clone(),
+            other: other.path.clone(),
+            light: light.light.name.clone(),
+        });
+    }
+    let gate = |differs: bool, judge: fn(f64, &str) -> Gate| {
+        let compared = others.iter().filter(|s| (stops(s).abs() > ONE_EXPOSURE) == differs);
+        let worst = compared
+            .map(|s| (departure(&first.patches, &s.patches), s))
+            .max_by(|(a, _), (b, _)| a.total_cmp(b));
+        worst.map(|(found, shot)| (judge(found, &shot.path.display().to_string()), shot))
+    };
+    let mut gates = Vec::new();
+    for (gate, shot) in [gate(true, linearity), gate(false, agreement)].into_iter().flatten() {
+        if gate.verdict == Verdict::Refused && !request.options.accept {
+            let what = format!("{}; {} (or add `--accept`)", gate.words, gate.advice);
+            return Err(Error::Chart { path: shot.path.clone(), what });
+        }
+        gates.push(gate);
+    }
+    Ok(gates)
+}
+
+/// The first two shots at one exposure, if there are any.
+fn twins(shots: &[Shot], stops: impl Fn(&Shot) -> f64) -> Option<(&Shot, &Shot)> {
+    let light: Vec<f64> = shots.iter().map(stops).collect();
+    let pairs = (0..shots.len()).flat_map(|i| (i + 1..shots.len()).map(move |j| (i, j)));
+    let mut near = pairs.filter(|(i, j)| (light[*i] - light[*j]).abs() <= ONE_EXPOSURE);
+    near.next().map(|(i, j)| (&shots[i], &shots[j]))
+}
+
+/// How far two sets of patches are from being the same scaled: the largest relative departure of a channel of a patch
+/// from the channel's median ratio, less three standard errors of its noise.
+fn departure(one: &[MeasuredPatch], other: &[MeasuredPatch]) -> f64 {
+    let pairs: Vec<(&MeasuredPatch, &MeasuredPatch)> =
+        one.iter().zip(other).filter(|(a, b)| a.excluded.is_none() && b.excluded.is_none()).collect();
+    let of_channel = |c: usize| {
+        let ratio = |(a, b): &(&MeasuredPatch, &MeasuredPatch)| a.rgb[c] / b.rgb[c];
+        let mut ratios: Vec<f64> = pairs.iter().map(ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let Some(scale) = ratios.get(ratios.len() / 2) else { return 0.0 };
+        let beyond = |pair: &(&MeasuredPatch, &MeasuredPatch)| {
+            let (a, b) = pair;
+            let noise = (a.uncertainty[c] / a.rgb[c]).hypot(b.uncertainty[c] / b.rgb[c]);
+            (ratio(pair) / scale - 1.0).abs() - 3.0 * noise
         };
-        first.patches.iter().zip(&shot.patches).map(off).fold(0.0, f64::max)
-    });
-    worst.reduce(f64::max)
+        pairs.iter().map(beyond).fold(0.0, f64::max)
+    };
+    (0..3).map(of_channel).fold(0.0, f64::max)
 }

@@ -1,9 +1,11 @@
 //! Where profiles come from: the user's folder first, then those built into the program.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use photo::Camera;
-use profile::Profile;
+use profile::export::dcp;
+use profile::{Profile, ProfileCamera};
 
 use crate::Error;
 
@@ -22,9 +24,40 @@ pub struct Found {
 /// Profiles by camera.
 #[derive(Debug, Clone, Default)]
 pub struct ProfileStore {
-    found: Vec<Found>,
+    entries: Vec<Entry>,
     /// Profile files that could not be used, each with its reason.
     pub faults: Vec<String>,
+}
+
+/// A profile that is there; that of a DCP is made when it is first wanted, which takes some tenths of a second.
+#[derive(Debug, Clone)]
+struct Entry {
+    camera: ProfileCamera,
+    path: PathBuf,
+    found: OnceLock<Option<Found>>,
+}
+
+impl Entry {
+    fn of(profile: Profile, place: String) -> Self {
+        let camera = profile.camera().clone();
+        Self { camera, path: PathBuf::new(), found: OnceLock::from(Some(Found { profile, place })) }
+    }
+
+    /// A file of the user's folder. All that can be wrong with a file is said here.
+    fn read(path: &Path) -> Result<Self, Error> {
+        if !has_extension(path, "dcp") {
+            return Ok(Self::of(read(path)?, path.display().to_string()));
+        }
+        let bytes = crate::files::read(path)?;
+        let camera = dcp::camera(&bytes).map_err(|source| Error::Dcp { path: path.to_owned(), source })?;
+        Ok(Self { camera, path: path.to_owned(), found: OnceLock::new() })
+    }
+
+    fn get(&self) -> Option<&Found> {
+        let place = || self.path.display().to_string();
+        let make = || read(&self.path).ok().map(|profile| Found { profile, place: place() });
+        self.found.get_or_init(make).as_ref()
+    }
 }
 
 impl ProfileStore {
@@ -33,16 +66,16 @@ impl ProfileStore {
         Self::default().with_builtin()
     }
 
-    /// The profiles of the user's folder (every `.toml` below it; the folder may be missing), then the built-in
-    /// ones.
+    /// The profiles of the user's folder (every `.toml` below it, then every `.dcp`; the folder may be missing), then
+    /// the built-in ones.
     pub fn with_user_folder(folder: &Path) -> Self {
         let mut store = Self::default();
         let mut files = Vec::new();
         collect(folder, &mut files);
-        files.sort();
+        files.sort_by_cached_key(|path| (has_extension(path, "dcp"), path.clone()));
         for path in files {
-            match read(&path) {
-                Ok(profile) => store.found.push(Found { profile, place: path.display().to_string() }),
+            match Entry::read(&path) {
+                Ok(entry) => store.entries.push(entry),
                 Err(fault) => store.faults.push(fault.to_string()),
             }
         }
@@ -60,7 +93,7 @@ impl ProfileStore {
 
     /// The first profile for a camera.
     pub fn find(&self, camera: &Camera) -> Option<&Found> {
-        self.found.iter().find(|f| is_for(&f.profile, camera))
+        self.entries.iter().filter(|e| is_of(&e.camera, camera)).find_map(Entry::get)
     }
 
     /// The profile that a person names: a file, or the camera of a profile in the store ("Nikon D700").
@@ -72,19 +105,19 @@ impl ProfileStore {
         if path.is_file() {
             return Ok(Found { profile: read(path)?, place: text.to_owned() });
         }
-        let named = self.found.iter().find(|f| f.profile.camera().is("", text));
+        let named = self.entries.iter().filter(|e| e.camera.is("", text)).find_map(Entry::get);
         named.cloned().ok_or_else(|| Error::NoProfile { text: text.to_owned() })
     }
 
     /// All profiles, those of the user first.
-    pub fn all(&self) -> &[Found] {
-        &self.found
+    pub fn all(&self) -> Vec<&Found> {
+        self.entries.iter().filter_map(Entry::get).collect()
     }
 
     fn with_builtin(mut self) -> Self {
         for (name, text) in BUILTIN {
             match profile::file::parse(text) {
-                Ok(profile) => self.found.push(Found { profile, place: "built in".to_owned() }),
+                Ok(profile) => self.entries.push(Entry::of(profile, "built in".to_owned())),
                 Err(fault) => self.faults.push(format!("built-in profile {name}: {fault}")),
             }
         }
@@ -94,7 +127,10 @@ impl ProfileStore {
 
 /// Whether a profile is for a camera, by any of the camera's names.
 pub(crate) fn is_for(profile: &Profile, camera: &Camera) -> bool {
-    let of = profile.camera();
+    is_of(profile.camera(), camera)
+}
+
+fn is_of(of: &ProfileCamera, camera: &Camera) -> bool {
     of.is(&camera.common_make, &camera.common_model) || of.is(&camera.make, &camera.model)
 }
 
@@ -104,8 +140,8 @@ pub(crate) fn is_for(profile: &Profile, camera: &Camera) -> bool {
 /// A file that cannot be read or is no usable profile.
 pub fn read(path: &Path) -> Result<Profile, Error> {
     let bytes = crate::files::read(path)?;
-    if profile::export::dcp::is_dcp(&bytes) {
-        let imported = profile::export::dcp::import(&bytes);
+    if dcp::is_dcp(&bytes) {
+        let imported = dcp::import(&bytes);
         return imported.map(|i| i.profile).map_err(|source| Error::Dcp { path: path.to_owned(), source });
     }
     let text = String::from_utf8(bytes).map_err(|_| {
@@ -129,10 +165,14 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
         let path = entry.path();
         if path.is_dir() {
             collect(&path, files);
-        } else if path.extension().is_some_and(|e| e == "toml") {
+        } else if has_extension(&path, "toml") || has_extension(&path, "dcp") {
             files.push(path);
         }
     }
+}
+
+fn has_extension(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(wanted))
 }
 
 #[cfg(test)]

@@ -21,6 +21,8 @@ pub struct Exposure {
     pub falloff: f64,
     /// Share of the light that the lens spreads evenly over the picture, 0 to 1.
     pub glare: f64,
+    /// Standard deviation of the lens's Gaussian blur in pixels; 0 for none.
+    pub blur: f64,
     /// Seed of shot noise and read noise; `None` for counts that are only rounded.
     pub noise: Option<u64>,
     /// How the camera is held. The scene stands upright in the developed picture.
@@ -30,7 +32,7 @@ pub struct Exposure {
 }
 
 impl Default for Exposure {
-    /// Daylight of 5500 K, white at 0.55 of saturation, no falloff, glare or noise.
+    /// Daylight of 5500 K, white at 0.55 of saturation, no falloff, glare, blur or noise.
     fn default() -> Self {
         Self {
             light: Spectrum::daylight(5500.0),
@@ -38,6 +40,7 @@ impl Default for Exposure {
             stops: 0.0,
             falloff: 0.0,
             glare: 0.0,
+            blur: 0.0,
             noise: None,
             orientation: Orientation::Upright,
             metadata: metadata(),
@@ -70,16 +73,18 @@ pub fn metadata() -> Metadata {
 
 /// The capture that `camera` makes of `scene`.
 ///
-/// Light on the sensor is (1 - glare) x scene + glare x mean of the scene, times 1 - falloff x r^2 (r = 1 in the
+/// Light on the sensor is (1 - glare) x scene (blurred) + glare x mean of the scene, times 1 - falloff x r^2 (r = 1 in the
 /// corner); a count is black level + share of saturation x (white level - black level), rounded, at most the white
 /// level. Noise has the variance of the electrons counted plus that of reading them.
 pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
     let light = &exposure.light;
     let reference = camera.response(&chart::white(), light).into_iter().fold(0.0, f64::max);
     let gain = exposure.white / reference * exp2(exposure.stops);
-    let picture = scene.seen_by(|r| camera.response(r, light).map(|v| v * gain));
-
     let upright = scene.size();
+    let mut picture = scene.seen_by(|r| camera.response(r, light).map(|v| v * gain));
+    if exposure.blur > 0.0 {
+        picture = blurred(&picture, upright, exposure.blur);
+    }
     let lit = exposure.orientation.applied_to(upright);
     let (left, top) = camera.masked;
     let size = Size { width: lit.width + left, height: lit.height + top };
@@ -179,6 +184,35 @@ impl Optics {
         let gain = (1.0 - self.falloff * r2) as f32;
         std::array::from_fn(|c| (light[c] * self.direct + self.veil[c]) * gain)
     }
+}
+
+/// A picture through a lens that spreads every point as a Gaussian; beyond its edges the picture goes on as it ends.
+fn blurred(picture: &[[f32; 3]], size: Size, deviation: f64) -> Vec<[f32; 3]> {
+    let reach = (4.0 * deviation).ceil() as isize;
+    let weight = |d: isize| exp2(-0.5 * (d as f64 / deviation).powi(2) * std::f64::consts::LOG2_E);
+    let sum: f64 = (-reach..=reach).map(weight).sum();
+    let weights: Vec<(isize, f32)> = (-reach..=reach).map(|d| (d, (weight(d) / sum) as f32)).collect();
+    let along = |picture: &[[f32; 3]], down: bool| -> Vec<[f32; 3]> {
+        let at = |i: usize, d: isize| {
+            let (x, y) = (i % size.width, i / size.width);
+            if down {
+                y.saturating_add_signed(d).min(size.height - 1) * size.width + x
+            } else {
+                y * size.width + x.saturating_add_signed(d).min(size.width - 1)
+            }
+        };
+        let pixel = |i: usize| {
+            let mut mean = [0f32; 3];
+            for (d, weight) in &weights {
+                for (m, v) in mean.iter_mut().zip(picture[at(i, *d)]) {
+                    *m += weight * v;
+                }
+            }
+            mean
+        };
+        (0..picture.len()).map(pixel).collect()
+    };
+    along(&along(picture, false), true)
 }
 
 /// The stored number for `light`, a share of saturation.

@@ -91,6 +91,7 @@ fn shot(camera: &str, light_name: &str, layout: &str, patches: &[Spectrum]) -> (
             accept: true,
             ..ShotOptions::default()
         },
+        average: false,
         kind: None,
         date: String::new(),
     };

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
+pub(crate) mod clutter;
+
 use chart::{Homography, Layout, Picture, Quad};
 use colour::{RgbSpace, Vector3, white};
 

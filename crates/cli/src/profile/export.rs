@@ -54,6 +54,10 @@ pub(super) struct Export {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=129))]
     grid: Option<u8>,
 
+    /// For ICC: version of the format; 2 for older programs [default: 4]
+    #[arg(long, value_name = "VERSION")]
+    icc_version: Option<IccVersion>,
+
     /// File to write
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -79,6 +83,14 @@ enum Format {
 enum ShaperName {
     None,
     Sqrt,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum IccVersion {
+    #[value(name = "2")]
+    Two,
+    #[value(name = "4")]
+    Four,
 }
 
 /// What an exported file makes of balanced camera RGB.
@@ -117,6 +129,7 @@ impl Export {
             (!self.neutrals.is_empty(), is(&[Format::Dcp]), "--neutral", "dcp"),
             (self.space.is_some(), is(&[Format::Cube, Format::Clf]), "--space", "cube and clf"),
             (self.shaper.is_some(), is(&[Format::Cube]), "--shaper", "cube"),
+            (self.icc_version.is_some(), is(&[Format::Icc]), "--icc-version", "icc"),
             (self.grid.is_some(), !is(&[Format::Dcp]), "--grid", "icc, cube and clf"),
         ] {
             if given && !fits {
@@ -194,7 +207,11 @@ impl Export {
                 (text.into_bytes(), Box::new(move |rgb| read.xyz(&space, rgb)))
             }
             Format::Icc | Format::Dcp => {
-                let bytes = icc::write(profile, calibration, size);
+                let version = match self.icc_version {
+                    Some(IccVersion::Two) => icc::Version::Two,
+                    Some(IccVersion::Four) | None => icc::Version::Four,
+                };
+                let bytes = icc::write(profile, calibration, size, version);
                 let read = Icc::read(&bytes)?;
                 (bytes, Box::new(move |rgb| read.xyz(rgb)))
             }

@@ -30,8 +30,8 @@ pub(super) struct Lint {
 impl Lint {
     pub(super) fn run(self) -> Result<Outcome> {
         let store = super::store();
-        let profiles = if self.all {
-            store.all().to_vec()
+        let profiles: Vec<_> = if self.all {
+            store.all().into_iter().cloned().collect()
         } else {
             self.profiles.iter().map(|text| store.choose(text)).collect::<Result<_, _>>()?
         };

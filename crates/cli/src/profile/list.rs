@@ -21,8 +21,9 @@ impl List {
     pub(super) fn run(self) -> Result<Outcome> {
         let store = super::store();
         let mut out = std::io::stdout().lock();
-        let width = store.all().iter().map(|f| f.profile.camera().name().len()).max().unwrap_or(0);
-        for found in store.all() {
+        let all = store.all();
+        let width = all.iter().map(|f| f.profile.camera().name().len()).max().unwrap_or(0);
+        for found in &all {
             let profile = &found.profile;
             let lights: Vec<&str> = profile.calibrations().iter().map(|c| c.light.name.as_str()).collect();
             let mut models: Vec<String> = profile.calibrations().iter().map(|c| c.kind.to_string()).collect();
@@ -42,7 +43,7 @@ impl List {
                 writeln!(out, "{name:width$}  {:10}  {lights:12}  {}", models.join(", "), found.place)?;
             }
         }
-        if store.all().is_empty() && !self.json {
+        if all.is_empty() && !self.json {
             crate::say(format_args!("there are no profiles"));
         }
         Ok(Outcome::Done)

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use darkroot::make_profile::MadeLight;
-use darkroot::shot::{ShotOptions, Verdict};
-use darkroot::{ChartRequest, Settings, charts, light, make_profile, report};
+use darkroot::shot::{Gate, ShotOptions, Verdict};
+use darkroot::{ChartRequest, Error, Settings, charts, light, make_profile, report};
 use profile::Kind;
 use serde_json::json;
 
@@ -99,6 +99,7 @@ impl ShotArgs {
             reference_name: reference.name,
             reference_sha256: reference.sha256,
             options: self.options(),
+            average: false,
             kind,
             date: date.to_owned(),
         })
@@ -115,10 +116,14 @@ pub(super) struct Make {
     #[command(flatten)]
     shot: ShotArgs,
 
-    /// Light of the shots: D50, A, LED-B3, 5200K, x,y, lamp.csv; one for all, or one for each shot. Shots under one
-    /// light are averaged
+    /// Light of the shots: D50, A, LED-B3, 5200K, x,y, lamp.csv; one for all, or one for each shot. Shots of several
+    /// exposures under one light are a bracket: one measurement, and a check that the sensor is linear
     #[arg(long = "light", value_name = "LIGHT")]
     lights: Vec<String>,
+
+    /// Take the mean of several shots under one light at one exposure, and check that they agree
+    #[arg(long)]
+    average: bool,
 
     /// The model; without it the best by cross-validation
     #[arg(long, value_name = "MODEL", value_parser = crate::values::kind)]
@@ -162,8 +167,14 @@ impl Make {
         }
         let output = self.output.clone().unwrap_or_else(|| first.with_extension("toml"));
         let request = self.shot.request(&self.shots, &self.lights, self.model, &self.date)?;
+        let request = ChartRequest { average: self.average, ..request };
+        let lone = |i: usize| request.shots.iter().filter(|s| s.1 == request.shots[i].1).count() == 1;
+        if self.average && (0..request.shots.len()).all(lone) {
+            bail!("`--average` is for several shots under one light; leave it out, or give more shots");
+        }
         let made = match make_profile(&request, &Settings::default()) {
             Ok(made) => made,
+            Err(fault @ Error::SeveralShots { .. }) => bail!(fault),
             Err(fault) => {
                 crate::say(format_args!("error: {fault}"));
                 return Ok(Outcome::SomeFailed);
@@ -196,6 +207,9 @@ fn say_light(light: &MadeLight) {
         for note in &shot.notes {
             crate::say(format_args!("  note: {note}"));
         }
+    }
+    for gate in light.gates.iter().filter(|g| g.verdict != Verdict::Good) {
+        crate::say(format_args!("  warning: {}; {}", gate.words, gate.advice));
     }
     for note in &light.calibrated.notes {
         crate::say(format_args!("  note: {note}"));
@@ -240,6 +254,7 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
                 "model": c.kind.to_string(),
                 "training": summary(f.training),
                 "leave_one_out": summary(f.leave_one_out),
+                "exposures": c.exposures,
             }),
             Err(reason) => json!({ "model": c.kind.to_string(), "error": reason }),
         })
@@ -248,29 +263,13 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
         .shots
         .iter()
         .map(|s| {
-            let gates: Vec<_> = s
-                .gates
-                .iter()
-                .map(|g| {
-                    json!({
-                        "name": g.name,
-                        "verdict": match g.verdict {
-                            Verdict::Good => "good",
-                            Verdict::Warning => "warning",
-                            Verdict::Refused => "failed",
-                        },
-                        "value": g.value,
-                        "words": g.words,
-                    })
-                })
-                .collect();
             json!({
                 "file": s.path.display().to_string(),
                 "corners": s.corners,
                 "confidence": s.confidence,
                 "glare": s.glare,
                 "unevenness": s.slope.range(),
-                "gates": gates,
+                "gates": gates(&s.gates),
             })
         })
         .collect();
@@ -294,8 +293,21 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
         "model": light.calibrated.calibration.kind.to_string(),
         "models": compared,
         "white_rgb": light.calibrated.white_rgb,
-        "nonlinearity": light.nonlinearity,
+        "gates": gates(&light.gates),
         "shots": shots,
         "patches": patches,
     })
+}
+
+/// Checks, for machines; a value that could not be measured is null.
+fn gates(gates: &[Gate]) -> Vec<serde_json::Value> {
+    let one = |g: &Gate| {
+        let verdict = match g.verdict {
+            Verdict::Good => "good",
+            Verdict::Warning => "warning",
+            Verdict::Refused => "failed",
+        };
+        json!({ "name": g.name, "verdict": verdict, "value": g.value, "words": g.words })
+    };
+    gates.iter().map(one).collect()
 }

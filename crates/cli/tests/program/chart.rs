@@ -90,6 +90,11 @@ fn a_profile_from_a_shot_is_nearly_one_from_true_values() {
     }
 }
 
+/// A check by its name.
+fn gate<'a>(gates: &'a serde_json::Value, name: &str) -> &'a serde_json::Value {
+    gates.as_array().unwrap().iter().find(|g| g["name"] == name).unwrap_or_else(|| panic!("{name}: {gates}"))
+}
+
 /// Corners of a chart in pixels of the developed picture, from `darkroot chart --json`.
 fn found(desk: &Desk, file: &str) -> Vec<serde_json::Value> {
     let run = desk.run(&["chart", file, "--json"]);
@@ -113,6 +118,11 @@ fn a_chart_is_found_whichever_way_it_is_held() {
                 assert!((f.as_f64().unwrap() - (e - 4.0)).abs() < 1.0, "{turned}: {charts:?}");
             }
         }
+        let centres = charts[0]["centres"].as_array().unwrap();
+        assert_eq!((&charts[0]["grid"], centres.len()), (&serde_json::json!([6, 4]), 24));
+        // Where the diagonals of the chart cross.
+        let middle: f64 = [8, 9, 14, 15].iter().map(|i| centres[*i][0].as_f64().unwrap()).sum::<f64>() / 4.0;
+        assert!((middle - (240.0 - 4.0)).abs() < 4.0, "{turned}: {middle}");
         // The profile needs no help either, and the developed picture can be searched as well.
         assert_eq!(desk.run(&["profile", "chart.dng", "--light", "D50", "-o", "p.toml"]).code, 0);
         desk.develop(&["chart.dng", "-o", "chart.jpg"]);
@@ -141,7 +151,7 @@ fn no_chart_is_invented_and_a_mirrored_one_is_refused() {
 }
 
 #[test]
-fn two_lights_make_one_profile_and_shots_under_one_are_averaged() {
+fn two_lights_make_one_profile_and_a_bracket_under_one_checks_the_sensor() {
     let desk = desk(&daylight());
     desk.put("b.dng", shot(&Exposure { noise: Some(8), stops: -1.0, ..daylight() }));
     desk.put("a.dng", shot(&Exposure { light: light("A"), ..daylight() }));
@@ -168,7 +178,9 @@ fn two_lights_make_one_profile_and_shots_under_one_are_averaged() {
     assert_eq!((lines[0]["light"].as_str(), lines[1]["light"].as_str()), (Some("D50"), Some("A")));
     assert_eq!(lines[0]["shots"].as_array().unwrap().len(), 2);
     // A stop apart: the simulated sensor is linear.
-    assert!(lines[0]["nonlinearity"].as_f64().unwrap() < 0.02, "{}", lines[0]["nonlinearity"]);
+    let linear = gate(&lines[0]["gates"], "linearity");
+    assert!(linear["verdict"] == "good" && linear["value"].as_f64().unwrap() < 0.01, "{linear}");
+    assert!(lines[1]["gates"].as_array().unwrap().is_empty());
     let shown = desk.run(&["profile", "show", "p.toml"]).out;
     assert!(shown.contains("D50: xy") && shown.contains("A: xy"), "{shown}");
 }
@@ -214,6 +226,144 @@ fn shots_that_are_not_good_enough_are_refused_with_advice() {
         }
         assert!(!desk.names().contains(&"p.toml".to_owned()));
     }
+}
+
+#[test]
+fn blur_is_measured_warned_of_and_refused() {
+    // Patches are about 53 x 49 pixels.
+    let width = |json: &serde_json::Value| {
+        let sharpness = gate(&json["shots"][0]["gates"], "sharpness");
+        (sharpness["verdict"].as_str().unwrap().to_owned(), sharpness["value"].as_f64().unwrap())
+    };
+    for (blur, verdict) in [(0.0, "good"), (2.0, "good"), (5.0, "warning"), (9.0, "failed")] {
+        let desk = desk(&Exposure { blur, ..daylight() });
+        let report = ["-o", "p.toml", "--accept", "--report", "r.html", "--json"];
+        let run = profile(&desk, &report);
+        let (found, share) = width(&figures(&run));
+        assert_eq!(found, verdict, "{blur}: {share}");
+        if blur > 0.0 {
+            assert!((share / (2.563 * blur / 49.0) - 1.0).abs() < 0.12, "{blur}: {share}");
+        } else {
+            assert!(share < 0.06, "{share}");
+        }
+        assert_eq!(verdict != "good", run.err.contains("focus on the chart"), "{}", run.err);
+        let page = String::from_utf8(desk.read("r.html")).unwrap();
+        assert!(page.contains("edges are") && page.contains("of a patch"));
+        // Without `--accept`.
+        let plain = profile(&desk, &["-o", "q.toml"]);
+        assert_eq!(plain.code, i32::from(verdict == "failed"), "{}", plain.err);
+        assert_eq!(verdict == "failed", plain.err.contains("(or add `--accept`)"), "{}", plain.err);
+    }
+}
+
+#[test]
+fn the_report_tells_every_model_at_every_exposure() {
+    let desk = desk(&daylight());
+    let found = figures(&profile(&desk, &["-o", "p.toml", "--report", "r.html", "--json"]));
+    let page = String::from_utf8(desk.read("r.html")).unwrap();
+    let table = page.split("<h3>Exposure</h3>").nth(1).unwrap().split("</table>").next().unwrap();
+    let at = |model: &str| {
+        let all = found["models"].as_array().unwrap();
+        let of = all.iter().find(|m| m["model"] == model).unwrap();
+        let means: Vec<f64> =
+            of["exposures"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+        let cells: String = means.iter().map(|v| format!("<td>{v:.2}</td>")).collect();
+        assert!(table.contains(&format!("<td>{model}</td>{cells}")), "{model}: {table}");
+        assert!((means[3] - of["training"]["mean"].as_f64().unwrap()).abs() < 1e-9, "{model}");
+        means
+    };
+    for model in ["linear", "root-2", "root-4", "anchored", "hue-plane", "half"] {
+        let means = at(model);
+        assert!(means.iter().all(|v| (v - means[3]).abs() < 1e-6), "{model}: {means:?}");
+    }
+    let polynomial = at("polynomial-3");
+    assert!(polynomial[0] > 5.0 * polynomial[3] && polynomial[6] > 5.0 * polynomial[3], "{polynomial:?}");
+}
+
+/// A shot by a sensor that loses `loss` of the light at saturation, and half as much at half of it.
+fn bent_shot(exposure: &Exposure, loss: f64) -> Vec<u8> {
+    let scene = Scene::chart(SIZE, CORNERS, &simulate::chart::reflectances(), 6, 0.15);
+    let camera = Camera::simulated_one();
+    let mut capture = expose(&scene, &camera, exposure);
+    let photo::Counts::U16(mosaic) = &mut capture.counts else { panic!("16 bits") };
+    let black = f64::from(camera.black.at(0, 0, 0));
+    for count in &mut mosaic.samples {
+        let light = (f64::from(*count) - black) / (f64::from(camera.white) - black);
+        *count = (f64::from(*count) * (1.0 - loss * light.max(0.0))).round() as u16;
+    }
+    dng::write(&capture, dng::Storage::Uncompressed)
+}
+
+#[test]
+fn a_sensor_that_is_not_linear_is_told_by_a_bracket() {
+    let bright = Exposure { white: 0.8, ..daylight() };
+    let dark = Exposure { stops: -1.5, noise: Some(8), ..bright.clone() };
+    for (loss, verdict) in [(0.0, "good"), (0.04, "warning"), (0.15, "failed")] {
+        let desk = Desk::new();
+        desk.put("chart.dng", bent_shot(&bright, loss));
+        desk.put("dark.dng", bent_shot(&dark, loss));
+        let run = profile(&desk, &["dark.dng", "-o", "p.toml", "--report", "r.html", "--accept", "--json"]);
+        let found = figures(&run);
+        let linearity = gate(&found["gates"], "linearity");
+        assert_eq!(linearity["verdict"], verdict, "{loss}: {linearity}");
+        assert_eq!(verdict != "good", run.err.contains("leave out dark.dng"), "{}", run.err);
+        assert!(String::from_utf8(desk.read("r.html")).unwrap().contains("the sensor is linear to"));
+        let plain = profile(&desk, &["dark.dng", "-o", "q.toml"]);
+        assert_eq!(plain.code, i32::from(verdict == "failed"), "{}", plain.err);
+        let says = plain.err.contains("in steady light") && plain.err.contains("(or add `--accept`)");
+        assert_eq!(verdict == "failed", says, "{}", plain.err);
+        assert_eq!(verdict == "failed", !desk.names().contains(&"q.toml".to_owned()));
+    }
+}
+
+#[test]
+fn shots_at_one_exposure_are_averaged_only_when_asked() {
+    let noisy = Exposure { stops: -3.5, ..daylight() };
+    let desk = desk(&noisy);
+    let mut several = vec!["-o", "p.toml", "--json", "--accept"];
+    for (name, seed) in [("b.dng", 8), ("c.dng", 9), ("d.dng", 10)] {
+        desk.put(name, shot(&Exposure { noise: Some(seed), ..noisy.clone() }));
+        several.push(name);
+    }
+    let refused = profile(&desk, &several);
+    assert!(refused.code == 2 && refused.out.is_empty(), "{}", refused.err);
+    for word in ["chart.dng and b.dng were both taken under D50", "`--average`", "`--light`"] {
+        assert!(refused.err.contains(word), "{word}: {}", refused.err);
+    }
+    assert!(!desk.names().contains(&"p.toml".to_owned()));
+
+    let one = figures(&profile(&desk, &["-o", "one.toml", "--json", "--accept"]));
+    several.push("--average");
+    let mean = figures(&profile(&desk, &several));
+    assert_eq!(mean["shots"].as_array().unwrap().len(), 4);
+    assert_eq!(gate(&mean["gates"], "agreement")["verdict"], "good");
+    // Four shots halve the uncertainty, and the departure from what the camera makes of the patch without noise.
+    let (camera, light) = (Camera::simulated_one(), light("D50"));
+    let white = camera.response(&Spectrum::constant(1.0), &light);
+    let off = |found: &serde_json::Value| {
+        let patches = found["patches"].as_array().unwrap();
+        let all = patches.iter().zip(simulate::chart::reflectances()).flat_map(|(patch, r)| {
+            let truth = camera.response(&r, &light);
+            [0, 1, 2].map(|c| (patch["rgb"][c].as_f64().unwrap() * white[c] / truth[c] - 1.0).powi(2))
+        });
+        all.sum::<f64>().sqrt()
+    };
+    let uncertain = |found: &serde_json::Value| found["patches"][0]["uncertainty"][0].as_f64().unwrap();
+    let ratio = uncertain(&mean) / uncertain(&one);
+    assert!((0.4..0.6).contains(&ratio), "{ratio}");
+    assert!(off(&mean) < 0.8 * off(&one), "{} {}", off(&mean), off(&one));
+
+    let alone = profile(&desk, &["--average", "-o", "x.toml"]);
+    assert!(alone.code == 2 && alone.err.contains("several shots under one light"), "{}", alone.err);
+}
+
+#[test]
+fn shots_that_do_not_agree_are_not_averaged() {
+    let desk = desk(&daylight());
+    desk.put("b.dng", shot(&Exposure { falloff: 0.2, noise: Some(8), ..daylight() }));
+    let run = profile(&desk, &["b.dng", "--average", "-o", "p.toml", "--even-out"]);
+    assert_eq!(run.code, 1, "{}", run.err);
+    assert!(run.err.contains("agree to") && run.err.contains("leave out b.dng"), "{}", run.err);
 }
 
 #[test]

@@ -49,6 +49,7 @@ fn every_format_says_how_far_it_is_from_the_profile() {
     let desk = Desk::new();
     for (format, options) in [
         ("icc", &["--light", "D50"][..]),
+        ("icc", &["--light", "D50", "--icc-version", "2"]),
         ("clf", &["--light", "4000K"]),
         ("cube", &["--light", "a"]),
         ("dcp", &["--neutral", "0.47,1,0.68", "--neutral", "0.75,1,0.35"]),
@@ -79,6 +80,9 @@ fn what_is_in_the_files_is_the_camera_s_colour() {
     };
     export(&desk, &["p.toml", "--to", "icc", "-o", "a.icc"]);
     near(Icc::read(&desk.read("a.icc")).unwrap().xyz(rgb), "icc");
+    export(&desk, &["p.toml", "--to", "icc", "--icc-version", "2", "-o", "two.icc"]);
+    near(Icc::read(&desk.read("two.icc")).unwrap().xyz(rgb), "icc of version 2");
+    assert_eq!((desk.read("a.icc")[8], desk.read("two.icc")[8]), (4, 2));
     export(&desk, &["p.toml", "--to", "clf", "--space", "rec2020-linear", "--grid", "40", "-o", "a.clf"]);
     let text = String::from_utf8(desk.read("a.clf")).unwrap();
     assert!(text.contains("dim=\"40 40 40 3\"") && text.contains("Rec. 2020, linear"));
@@ -127,6 +131,8 @@ fn options_that_do_not_belong_to_the_format_are_refused() {
         (&["--to", "icc", "--space", "srgb", "-o", "a"][..], &["`--space` belongs to cube and clf"][..]),
         (&["--to", "clf", "--shaper", "sqrt", "-o", "a"], &["`--shaper` belongs to cube"]),
         (&["--to", "dcp", "--grid", "33", "-o", "a"], &["`--grid` belongs to icc"]),
+        (&["--to", "clf", "--icc-version", "2", "-o", "a"], &["`--icc-version` belongs to icc"]),
+        (&["--to", "icc", "--icc-version", "3", "-o", "a"], &["possible values: 2, 4"]),
         (&["--to", "icc", "--neutral", "1,1,1", "-o", "a"], &["`--neutral` belongs to dcp"]),
         (&["--to", "icc", "-o", "a"], &["D65, D50, A; choose one with `--light`"]),
         (&["--to", "icc", "--light", "D65", "A", "-o", "a"], &["one light"]),

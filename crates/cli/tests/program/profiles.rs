@@ -3,7 +3,7 @@
 use super::*;
 
 /// A root polynomial of order 2 whose terms sum to the white of D50.
-fn profile(make: &str, model: &str) -> String {
+pub(super) fn profile(make: &str, model: &str) -> String {
     format!(
         r#"format = "darkroot profile"
 version = 1
@@ -117,6 +117,29 @@ fn a_profile_in_the_users_folder_is_found_by_its_camera() {
 }
 
 #[test]
+fn a_dcp_in_the_users_folder_serves_its_camera_after_profiles_of_darkroots_own() {
+    let desk = Desk::with_dng();
+    let (matrix, _) = developed(&desk, &[]);
+    desk.put("p.toml", profile("Darkroot", "Simulated One"));
+    let export = ["profile", "export", "p.toml", "--to", "dcp", "--for", "a.dng", "-o", "p.dcp"];
+    assert_eq!(desk.run(&export).code, 0);
+    let folder = desk.data.path().join("darkroot/profiles/adobe");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("Simulated One.DCP"), desk.read("p.dcp")).unwrap();
+    let (by_dcp, err) = developed(&desk, &[]);
+    assert!(by_dcp != matrix && err.contains("Simulated One.DCP"), "{err}");
+    assert!(desk.run(&["profile", "list"]).out.contains("Simulated One.DCP"));
+
+    std::fs::write(folder.join("z.toml"), profile("Darkroot", "Simulated One")).unwrap();
+    let (_, err) = developed(&desk, &[]);
+    assert!(err.contains("z.toml") && !err.contains(".DCP"), "{err}");
+
+    std::fs::write(folder.join("broken.dcp"), "no DCP").unwrap();
+    let (_, err) = developed(&desk, &[]);
+    assert!(err.contains("warning: ") && err.contains("broken.dcp") && err.contains("not used"), "{err}");
+}
+
+#[test]
 fn the_folder_under_the_home_serves_where_no_data_folder_is_named() {
     let desk = Desk::with_dng();
     let folder = desk.data.path().join(".local/share/darkroot/profiles");
@@ -149,7 +172,7 @@ fn a_broken_profile_in_the_users_folder_is_said_and_left_out() {
 #[test]
 fn a_profile_of_the_user_wins_over_one_that_is_built_in() {
     let store = darkroot::ProfileStore::builtin();
-    let Some(built_in) = store.all().first() else {
+    let Some(built_in) = store.all().first().copied() else {
         eprintln!("skipped: no profile is built in");
         return;
     };

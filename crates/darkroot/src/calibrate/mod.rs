@@ -31,6 +31,9 @@ const KINDS: [Kind; 11] = [
 /// A model that is meant to be taken is taken when it is within this factor of the best.
 const AS_GOOD: f64 = 1.05;
 
+/// Exposures, in stops, at which every model is checked by scaling the patches.
+pub const EXPOSURES: [i32; 7] = [-3, -2, -1, 0, 1, 2, 3];
+
 /// What a person decides about the fit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Choice {
@@ -66,6 +69,9 @@ pub struct Compared {
     pub kind: Kind,
     /// Its errors, or why it could not be fitted.
     pub result: Result<Figures, String>,
+    /// Mean dE2000 on the patches of the fit with the light scaled to each of [`EXPOSURES`]; of a model that keeps
+    /// colours at every exposure all are the same.
+    pub exposures: Option<[f64; 7]>,
     /// What was chosen inside its fit.
     pub settings: String,
 }
@@ -206,12 +212,24 @@ fn compare(
         match result {
             Ok(fit) => {
                 let (figures, settings) = (fit.figures(samples), fit.settings.clone());
-                (Compared { kind, result: Ok(figures), settings }, Some(fit))
+                let exposures = Some(EXPOSURES.map(|stops| scaled_error(&fit.model, samples, stops)));
+                (Compared { kind, result: Ok(figures), exposures, settings }, Some(fit))
             }
-            Err(fault) => (Compared { kind, result: Err(fault.to_string()), settings: String::new() }, None),
+            Err(fault) => {
+                let result = Err(fault.to_string());
+                (Compared { kind, result, exposures: None, settings: String::new() }, None)
+            }
         }
     };
     KINDS.into_iter().map(one).collect()
+}
+
+/// Mean dE2000 of a model on the samples at another exposure, scaled back.
+fn scaled_error(model: &Model, samples: &Samples, stops: i32) -> f64 {
+    let k = 2f64.powi(stops);
+    let estimate = |rgb: &[f64; 3]| model.xyz(rgb.map(|v| v * k)).scaled(1.0 / k);
+    let estimates: Vec<Xyz> = samples.rgb().iter().map(estimate).collect();
+    Errors::between(&estimates, samples.xyz(), samples.white()).de2000.mean
 }
 
 /// The kind with the least mean error on patches left out; `spectral`, else `half`, else `anchored` where they are as

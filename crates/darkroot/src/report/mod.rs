@@ -2,6 +2,7 @@
 
 mod plots;
 mod shown;
+pub(crate) use shown::base64;
 
 use std::fmt::Write as _;
 
@@ -9,12 +10,9 @@ use chart::Layout;
 use colour::{RgbSpace, Vector3, Xyz, white};
 use profile::{Errors, Kind};
 
-use crate::calibrate::{Calibrated, Judged};
+use crate::calibrate::{Calibrated, EXPOSURES, Judged};
 use crate::make_profile::{MadeLight, MadeProfile};
 use crate::shot::{Gate, Verdict};
-
-/// Exposures, in stops, at which the chosen model is checked by scaling.
-const EXPOSURES: [i32; 7] = [-3, -2, -1, 0, 1, 2, 3];
 
 /// The page.
 pub fn html(made: &MadeProfile, layout: &Layout) -> String {
@@ -93,29 +91,28 @@ fn gates(page: &mut String, light: &MadeLight) {
             escape(&name),
             shot.confidence
         );
-        for Gate { verdict, words, advice, .. } in &shot.gates {
-            let (class, mark) = match verdict {
-                Verdict::Good => ("good", "good"),
-                Verdict::Warning => ("warning", "warning"),
-                Verdict::Refused => ("refused", "failed"),
-            };
-            let advice = if *verdict == Verdict::Good { String::new() } else { format!(": {advice}") };
-            let _ = write!(
-                page,
-                "<tr class=\"{class}\"><td>{mark}</td><td>{}{}</td></tr>",
-                escape(words),
-                escape(&advice)
-            );
-        }
+        shot.gates.iter().for_each(|g| gate(page, g));
     }
-    if let Some(off) = light.nonlinearity {
-        let _ = write!(
-            page,
-            "<tr><td></td><td>between the exposures the sensor is linear to {:.2} %</td></tr>",
-            100.0 * off
-        );
+    if !light.gates.is_empty() {
+        page.push_str("<tr><th colspan=\"2\">between the shots</th></tr>");
+        light.gates.iter().for_each(|g| gate(page, g));
     }
     page.push_str("</table>");
+}
+
+fn gate(page: &mut String, Gate { verdict, words, advice, .. }: &Gate) {
+    let (class, mark) = match verdict {
+        Verdict::Good => ("good", "good"),
+        Verdict::Warning => ("warning", "warning"),
+        Verdict::Refused => ("refused", "failed"),
+    };
+    let advice = if *verdict == Verdict::Good { String::new() } else { format!(": {advice}") };
+    let _ = write!(
+        page,
+        "<tr class=\"{class}\"><td>{mark}</td><td>{}{}</td></tr>",
+        escape(words),
+        escape(&advice)
+    );
 }
 
 /// Every patch in the chart's own grid.
@@ -191,24 +188,26 @@ fn models(page: &mut String, calibrated: &Calibrated) {
     page.push_str("</table><p class=\"legend\">dE2000 under the light. Training error says little: any model fits what it has seen.</p>");
 }
 
-/// The chosen model and the polynomial on the same patches at other exposures.
+/// Every model on the same patches at other exposures.
 fn exposures(page: &mut String, calibrated: &Calibrated) {
-    let model = &calibrated.calibration.model;
-    page.push_str("<h3>Exposure</h3><table class=\"models\"><tr><th>stops</th>");
+    page.push_str("<h3>Exposure</h3><table class=\"models\"><tr><th>model</th>");
     for stops in EXPOSURES {
         let _ = write!(page, "<th>{stops:+}</th>");
     }
-    page.push_str("</tr><tr><td>mean dE2000 of the profile</td>");
-    for stops in EXPOSURES {
-        let k = 2f64.powi(stops);
-        let usable: Vec<&Judged> = calibrated.patches.iter().filter(|p| p.excluded.is_none()).collect();
-        let estimates: Vec<Xyz> =
-            usable.iter().map(|p| model.xyz(p.rgb.map(|v| v * k)).scaled(1.0 / k)).collect();
-        let truths: Vec<Xyz> = usable.iter().map(|p| p.reference).collect();
-        let errors = Errors::between(&estimates, &truths, white::D50);
-        let _ = write!(page, "<td>{:.2}</td>", errors.de2000.mean);
+    page.push_str("</tr>");
+    for compared in &calibrated.compared {
+        let Some(means) = compared.exposures else { continue };
+        let class = if compared.kind == calibrated.calibration.kind { " class=\"chosen\"" } else { "" };
+        let _ = write!(page, "<tr{class}><td>{}</td>", compared.kind);
+        for mean in means {
+            let _ = write!(page, "<td>{mean:.2}</td>");
+        }
+        page.push_str("</tr>");
     }
-    page.push_str("</tr></table>");
+    page.push_str(
+        "</table><p class=\"legend\">Mean dE2000 on the patches with so many stops more light. Of a model that keeps \
+         colours at every exposure all figures of a row are the same.</p>",
+    );
 }
 
 fn notes(page: &mut String, light: &MadeLight) {

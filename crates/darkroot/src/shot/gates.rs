@@ -1,6 +1,6 @@
 //! Whether a shot of a chart is good enough to make a profile of it.
 
-use chart::{Layout, Measurement, Quad, Slope};
+use chart::{EdgeWidth, Layout, Measurement, Quad, Slope};
 use colour::Xyz;
 
 use super::{ShotOptions, View};
@@ -23,7 +23,7 @@ pub struct Gate {
     pub name: &'static str,
     /// How it came out.
     pub verdict: Verdict,
-    /// The measured value, in the unit that `words` say.
+    /// The measured value, in the unit that `words` say; NaN where it cannot be measured.
     pub value: f64,
     /// What was found.
     pub words: String,
@@ -45,6 +45,12 @@ const NOISE: (f64, f64) = (0.005, 0.05);
 const PATCH_PIXELS: (f64, f64) = (20.0, 8.0);
 /// Longest edge of the chart over the opposite one.
 const ANGLE: (f64, f64) = (1.15, 1.6);
+/// Width of the patches' edges, 10 to 90 %, as a share of a patch. A patch is measured from 0.22 of its side on: up to the
+/// first its neighbours change nothing, at the second they are 1.5 % of it in the mean and 7 % at worst (docs/charts.md).
+const EDGES: (f64, f64) = (0.20, 0.40);
+/// Departure of shots under one light from each other, relative, after their noise: dE2000 0.2 on a middle grey, and 0.7,
+/// as much as good profiles are off.
+const AGREEMENT: (f64, f64) = (0.01, 0.03);
 
 /// Checks a measured shot.
 #[expect(clippy::too_many_arguments, reason = "everything that was found about the shot is judged here")]
@@ -140,6 +146,52 @@ fn noise(measurements: &[Measurement], expected: &[Xyz]) -> Gate {
         NOISE,
         format!("the darkest patch is known to {:.2} %", 100.0 * relative),
         "use a lower ISO, more light, or several shots",
+    )
+}
+
+/// How sharp the patches' edges are.
+pub(super) fn sharpness(edges: Option<EdgeWidth>) -> Gate {
+    let advice = "focus on the chart, close the aperture by two stops, hold the camera still, or come nearer";
+    match edges {
+        Some(EdgeWidth { pixels, patch }) => graded(
+            "sharpness",
+            patch,
+            EDGES,
+            format!("the patches' edges are {pixels:.1} pixels wide, {:.0} % of a patch", 100.0 * patch),
+            advice,
+        ),
+        None => Gate {
+            name: "sharpness",
+            verdict: Verdict::Warning,
+            value: f64::NAN,
+            words: "the patches' edges are too faint or too noisy to tell how sharp the shot is".to_owned(),
+            advice: format!("see with `darkroot chart --preview` whether the grid is right; {advice}"),
+        },
+    }
+}
+
+/// Whether shots of several exposures are the same picture scaled.
+pub(crate) fn linearity(departure: f64, worst: &str) -> Gate {
+    graded(
+        "linearity",
+        departure,
+        AGREEMENT,
+        format!("between the exposures the sensor is linear to {:.2} %", 100.0 * departure),
+        &format!(
+            "bracket by exposure time only, in steady light, with a `--dark` for long exposures; or leave out {worst}, \
+             which departs most"
+        ),
+    )
+}
+
+/// Whether shots that are averaged show the same.
+pub(crate) fn agreement(departure: f64, worst: &str) -> Gate {
+    graded(
+        "agreement",
+        departure,
+        AGREEMENT,
+        format!("the shots that are averaged agree to {:.2} %", 100.0 * departure),
+        &format!("take them from one place in steady light; or leave out {worst}, which departs most"),
     )
 }
 

@@ -6,10 +6,11 @@ mod view;
 
 use std::path::{Path, PathBuf};
 
-use chart::{Layout, Measurement, Quad, Reference, Slope, glare, measure};
+use chart::{Layout, Measurement, Quad, Reference, Slope, edge_width, glare, measure};
 use colour::white;
 
 pub use gates::{Gate, Verdict, gates};
+pub(crate) use gates::{agreement, linearity};
 pub use view::View;
 
 use crate::calibrate::MeasuredPatch;
@@ -88,13 +89,14 @@ pub fn open(
         Some(corners) => find_chart::by_hand(layout, corners),
         None => find_chart::best(&view, layout),
     };
-    let Place { corners, windows, confidence } = found.map_err(fault)?;
+    let Place { corners, patches: whole, windows, confidence } = found.map_err(fault)?;
     check_inside(&corners, &view).map_err(fault)?;
     let names: Vec<&str> = layout.patches.iter().map(|p| p.name.as_str()).collect();
     let colours = reference.for_patches(&names).map_err(|e| fault(format!("the reference {e}")))?;
     check_chart(layout, &colours).map_err(fault)?;
 
-    let in_frame: Vec<Quad> = windows.iter().map(|q| q.map(|p| view.to_frame(p))).collect();
+    let framed = |quads: &[Quad]| quads.iter().map(|q| q.map(|p| view.to_frame(p))).collect::<Vec<Quad>>();
+    let in_frame = framed(&windows);
     let measurements = measure(&view.frame.light, view.frame.saturation, &in_frame);
     if let Some(i) = measurements.iter().position(|m| !m.is_complete()) {
         let what = format!(
@@ -191,8 +193,10 @@ pub fn open(
     if let Some(unknown) = options.exclude.iter().find(|e| !names.iter().any(|n| n.eq_ignore_ascii_case(e))) {
         return Err(fault(format!("the chart has no patch `{unknown}` to exclude")));
     }
-    let gates = gates(&view, &measurements, &expected, slope, veil, &corners, layout, options);
-    if let Some(failed) = gates.iter().find(|g| g.verdict == Verdict::Refused)
+    let edges = edge_width(&view.frame.light, view.frame.saturation, &framed(&whole), layout.columns);
+    let mut checked = gates(&view, &measurements, &expected, slope, veil, &corners, layout, options);
+    checked.push(gates::sharpness(edges));
+    if let Some(failed) = checked.iter().find(|g| g.verdict == Verdict::Refused)
         && !options.accept
     {
         return Err(fault(format!("{}; {} (or add `--accept`)", failed.words, failed.advice)));
@@ -207,7 +211,7 @@ pub fn open(
         measurements,
         slope,
         glare: veil,
-        gates,
+        gates: checked,
         notes,
         exposure_seconds: view.exposure_seconds,
     };

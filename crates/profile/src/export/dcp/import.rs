@@ -34,7 +34,6 @@ const PLACES: usize = 60;
 /// Bytes that are no DCP, or one whose numbers give no model.
 pub fn import(bytes: &[u8]) -> Result<Imported, Error> {
     let dcp = Dcp::read(bytes)?;
-    let unusable = || Error::file("DCP", "its matrices and tables give no usable colours");
     let mut both = Vec::new();
     for light in &dcp.lights {
         let light = DcpLight {
@@ -49,12 +48,28 @@ pub fn import(bytes: &[u8]) -> Result<Imported, Error> {
     both.sort_by(|a, b| b.0.light.kelvin().total_cmp(&a.0.light.kelvin()));
     let (calibrations, deviations): (Vec<_>, Vec<Deviation>) = both.into_iter().unzip();
     let origin = Origin { summary: summary(&dcp, &deviations), ..Origin::default() };
-    let profile = Profile::new(camera(&dcp.camera), calibrations, origin).ok_or_else(unusable)?;
+    let profile = Profile::new(camera_of(&dcp.camera), calibrations, origin).ok_or_else(unusable)?;
     Ok(Imported { profile, deviations })
 }
 
+/// The camera that a DCP is for, without the work of making a profile of it.
+///
+/// # Errors
+/// Bytes that are no DCP, or one whose matrices give no colours.
+pub fn camera(bytes: &[u8]) -> Result<ProfileCamera, Error> {
+    let dcp = Dcp::read(bytes)?;
+    if dcp.lights.iter().any(|light| white_preserving(&light.forward_matrix).is_none()) {
+        return Err(unusable());
+    }
+    Ok(camera_of(&dcp.camera))
+}
+
+fn unusable() -> Error {
+    Error::file("DCP", "its matrices and tables give no usable colours")
+}
+
 /// "Nikon D700": the first word is the maker.
-fn camera(name: &str) -> ProfileCamera {
+fn camera_of(name: &str) -> ProfileCamera {
     let (make, model) = name.trim().split_once(' ').unwrap_or(("", name.trim()));
     ProfileCamera { make: make.to_owned(), model: model.trim().to_owned(), aliases: Vec::new() }
 }

@@ -14,7 +14,7 @@ mod import;
 mod read;
 
 pub use hue_sat::HueSatMap;
-pub use import::{Imported, import};
+pub use import::{Imported, camera, import};
 
 use colour::adaptation::bradford;
 use colour::temperature::{daylight_xy, planckian_xy};
