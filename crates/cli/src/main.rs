@@ -3,12 +3,16 @@
 //! Data goes to stdout, words to stderr. Exit codes: 0 all done, 1 some file failed, 2 wrong usage, 3
 //! what was judged is not good enough, 130 interrupted.
 
+mod batch;
 mod chart;
 mod develop;
 mod evaluate;
 mod inspect;
+mod interrupt;
+mod picture;
 mod profile;
 mod progress;
+mod recipe;
 mod shell;
 mod values;
 mod verify;
@@ -47,19 +51,25 @@ struct Common {
 #[derive(Debug, Subcommand)]
 enum Command {
     Develop(develop::Develop),
+    Batch(Box<batch::Batch>),
+    Watch(Box<batch::Watch>),
     Inspect(inspect::Inspect),
+    Recipe(recipe::Recipe),
     Profile(profile::Profile),
     Verify(verify::Verify),
     Chart(chart::Chart),
     Evaluate(evaluate::Evaluate),
     Completions(shell::Completions),
     Man(shell::Man),
+    Worker(batch::Worker),
 }
 
 /// How a command that ran to its end came out.
 enum Outcome {
     Done,
     SomeFailed,
+    /// It was told to stop before the end.
+    Interrupted,
     /// What was judged is not good enough.
     Rejected,
 }
@@ -73,25 +83,30 @@ fn say(words: std::fmt::Arguments<'_>) {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     keep_decoders_quiet();
-    remove_unfinished_on_interrupt();
+    interrupt::handle();
     if let Some(threads) = cli.common.threads {
         // Fails only when the pool exists already, which nothing before this line makes.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     let outcome = match cli.command {
         Command::Develop(command) => command.run(cli.common),
+        Command::Batch(command) => command.run(cli.common),
+        Command::Watch(command) => command.run(cli.common),
         Command::Inspect(command) => command.run(),
+        Command::Recipe(command) => command.run(),
         Command::Profile(command) => command.run(cli.common),
         Command::Verify(command) => command.run(cli.common),
         Command::Chart(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),
+        Command::Worker(command) => command.run(),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
         Ok(Outcome::Rejected) => ExitCode::from(3),
+        Ok(Outcome::Interrupted) => ExitCode::from(130),
         // Whoever reads our output has seen enough.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
@@ -117,17 +132,4 @@ fn keep_decoders_quiet() {
             report(info);
         }
     }));
-}
-
-/// An interrupted program leaves no half-written file behind.
-fn remove_unfinished_on_interrupt() {
-    const INTERRUPTED: i32 = 130;
-    let handler = || {
-        darkroot::abandon();
-        std::process::exit(INTERRUPTED);
-    };
-    // Without a handler the program still works; only a temporary file may stay after an interrupt.
-    if let Err(error) = ctrlc::set_handler(handler) {
-        crate::say(format_args!("warning: interrupts cannot be handled: {error}"));
-    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use darkroot::recipe::{self, Effective, Key, Layer, Layers, Origin};
+use darkroot::recipe::{self, Effective, Key, Layer, Layers, Origin, RecipeError};
 use darkroot::{Format, Settings, Target};
 
 /// What the person asked for; where an option was not given, recipes and then defaults hold.
@@ -93,9 +93,9 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// The layers of this run; what the flags say is among them.
-    pub(crate) fn layers(&self) -> Result<Layers> {
+    pub(crate) fn layers(&self) -> Result<Layers, RecipeError> {
         let given = Key::ALL.into_iter().filter_map(|key| Some((key, self.given(key)?.to_owned())));
-        Ok(Layers::new(self.recipe.as_deref(), Layer::flags(given)?, !self.no_recipes)?)
+        Layers::new(self.recipe.as_deref(), Layer::flags(given)?, !self.no_recipes)
     }
 
     /// Whether white balance or profile were asked for.

@@ -59,11 +59,12 @@ pub(crate) enum Failed<E> {
     Other(E),
 }
 
-/// Writes a file through `fill`: to a temporary file in the same folder, flushed to the disk, then renamed. If
-/// anything fails, the temporary file is removed and what was at `path` stays. Without `overwrite` an existing
-/// file is an [`io::ErrorKind::AlreadyExists`], even one that appears meanwhile.
+/// Writes a file through `fill`: to a temporary file in the same folder, or in `scratch` on the same disk, flushed to
+/// the disk, then renamed. If anything fails, the temporary file is removed and what was at `path` stays. Without
+/// `overwrite` an existing file is an [`io::ErrorKind::AlreadyExists`], even one that appears meanwhile.
 pub(crate) fn write<E>(
     path: &Path,
+    scratch: Option<&Path>,
     overwrite: bool,
     fill: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
 ) -> Result<(), Failed<E>> {
@@ -79,7 +80,7 @@ pub(crate) fn write<E>(
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let temporary = builder.tempfile_in(folder).map_err(Failed::Io)?;
+    let temporary = builder.tempfile_in(scratch.unwrap_or(folder)).map_err(Failed::Io)?;
     let _listed = Listed::new(temporary.path());
     let mut out = BufWriter::with_capacity(1 << 20, temporary.as_file());
     fill(&mut out).map_err(Failed::Other)?;
@@ -87,7 +88,17 @@ pub(crate) fn write<E>(
     drop(out);
     temporary.as_file().sync_all().map_err(Failed::Io)?;
     let persisted = if overwrite { temporary.persist(path) } else { temporary.persist_noclobber(path) };
-    persisted.map(drop).map_err(|e| Failed::Io(e.error))
+    persisted.map_err(|e| Failed::Io(e.error))?;
+    sync_folder(folder);
+    Ok(())
+}
+
+/// Flushes a folder's entries to the disk, where the system can: after a power cut a renamed file has its new name.
+pub(crate) fn sync_folder(folder: &Path) {
+    // Systems that cannot open folders keep their entries safe by themselves.
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
 }
 
 /// Writes bytes as a file through [`write`]; missing folders are made.
@@ -101,7 +112,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8], overwrite: bool) -> Result<
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|e| Error::write(path, &e))?;
     }
-    write(path, overwrite, |out| out.write_all(bytes)).map_err(|failed| match failed {
+    write(path, None, overwrite, |out| out.write_all(bytes)).map_err(|failed| match failed {
         Failed::Io(e) | Failed::Other(e) => Error::write(path, &e),
     })
 }

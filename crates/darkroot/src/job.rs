@@ -82,22 +82,42 @@ pub fn develop(
     store: &ProfileStore,
     progress: Option<&dyn Fn(Step)>,
 ) -> Result<Report, Error> {
-    let start = Instant::now();
     let step = |s: Step| {
         if let Some(progress) = progress {
             progress(s);
         }
     };
-    let (input, output) = (&job.input, &job.output);
-    if !settings.overwrite && output.symlink_metadata().is_ok() {
-        return Err(Error::Exists { path: output.clone() });
+    refuse_existing(job, settings)?;
+    step(Step::Decode);
+    let read = || files::read(&job.input);
+    develop_bytes(job, read, settings, store, &step, &mut |_, _| {})
+}
+
+/// Without `overwrite`, an output that exists is an error: before any work is done.
+fn refuse_existing(job: &Job, settings: &Settings) -> Result<(), Error> {
+    if !settings.overwrite && job.output.symlink_metadata().is_ok() {
+        return Err(Error::Exists { path: job.output.clone() });
     }
+    Ok(())
+}
+
+/// As [`develop()`], with the bytes of the input from `read`. `seen` gets to see the camera and the
+/// picture before that is written.
+pub(crate) fn develop_bytes(
+    job: &Job,
+    read: impl FnOnce() -> Result<Vec<u8>, Error>,
+    settings: &Settings,
+    store: &ProfileStore,
+    step: &dyn Fn(Step),
+    seen: &mut dyn FnMut(&photo::Camera, &Picture),
+) -> Result<Report, Error> {
+    let start = Instant::now();
+    let (input, output) = (&job.input, &job.output);
+    refuse_existing(job, settings)?;
     let format = format_of(output, settings);
     let recipe =
         settings.resolve(format).map_err(|e| Error::Write { path: output.clone(), reason: e.to_string() })?;
-
-    step(Step::Decode);
-    let capture = decode(input, settings)?;
+    let capture = decode(input, read()?, settings)?;
 
     step(Step::Develop);
     let (picture, mut report) = match settings.engine {
@@ -106,13 +126,15 @@ pub fn develop(
     };
     let mut notes = capture.notes.clone();
     let metadata = metadata_for(&capture, &picture);
+    seen(&capture.camera, &picture);
     drop(capture);
 
     step(Step::Write);
     let write = |out: &mut io::BufWriter<&std::fs::File>| {
         encode::write(&picture, format, &settings.encode, &metadata, out)
     };
-    files::write(output, settings.overwrite, write).map_err(|failed| match failed {
+    let folder = settings.scratch.as_deref();
+    files::write(output, folder, settings.overwrite, write).map_err(|failed| match failed {
         Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
         Failed::Io(e) => Error::write(output, &e),
         Failed::Other(encode::Error::Io(e)) => Error::write(output, &e),
@@ -138,8 +160,7 @@ fn format_of(output: &Path, settings: &Settings) -> Format {
     settings.format.or_else(by_name).unwrap_or_else(|| settings.default_format())
 }
 
-fn decode(input: &Path, settings: &Settings) -> Result<Capture, Error> {
-    let bytes = files::read(input)?;
+fn decode(input: &Path, bytes: Vec<u8>, settings: &Settings) -> Result<Capture, Error> {
     raw::decode(&bytes, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.to_owned(), source })
 }

@@ -20,6 +20,11 @@
 pub mod settings;
 pub use settings::{Engine, ProfileChoice, Settings, SettingsError};
 
+pub mod recipe;
+pub use recipe::{Effective, Key, Layer, Layers, Origin, RecipeError};
+
+pub mod batch;
+
 pub mod naming;
 pub use naming::{Job, NamingError, Target, plan_outputs};
 

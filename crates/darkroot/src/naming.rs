@@ -60,6 +60,23 @@ pub enum NamingError {
         /// What stands in the braces.
         name: String,
     },
+    /// A placeholder that does not exist in batches.
+    #[error(
+        "`{{{name}}}` is no placeholder; there are {{folder}} {{stem}} {{suffix}} {{ext}} {{parent}} {{camera}} \
+         {{date}} {{year}} {{month}} {{day}} {{seq}}"
+    )]
+    BatchPlaceholder {
+        /// What stands in the braces.
+        name: String,
+    },
+    /// A template that leaves the output folder.
+    #[error(
+        "`{template}` leads out of the output folder; name files below it, such as `{{folder}}/{{stem}}.{{ext}}`"
+    )]
+    Outside {
+        /// As it was given.
+        template: String,
+    },
     /// The ending names no format.
     #[error(
         "{path}: its ending names no picture format; use .jpg .png .tif .webp .avif .exr or .jxl, or add `--format`",
@@ -106,13 +123,14 @@ impl Target {
     }
 }
 
-/// The outputs of all inputs, in their order.
+/// The outputs of all inputs, in their order. Each input comes with the format of its picture.
 ///
 /// # Errors
 /// Outputs that collide, also where they differ only in case; an output that is an input; a wrong placeholder.
-pub fn plan_outputs(inputs: &[PathBuf], target: &Target, format: Format) -> Result<Vec<Job>, NamingError> {
+pub fn plan_outputs(inputs: &[(PathBuf, Format)], target: &Target) -> Result<Vec<Job>, NamingError> {
     let mut jobs = Vec::with_capacity(inputs.len());
-    for (i, input) in inputs.iter().enumerate() {
+    for (i, (input, format)) in inputs.iter().enumerate() {
+        let format = *format;
         let output = match target {
             Target::Beside => input.with_extension(format.extension()),
             Target::Folder(folder) => {
@@ -125,7 +143,7 @@ pub fn plan_outputs(inputs: &[PathBuf], target: &Target, format: Format) -> Resu
         jobs.push(Job { input: input.clone(), output });
     }
     let mut taken: HashMap<String, &Path> = HashMap::new();
-    let originals: HashMap<String, &Path> = inputs.iter().map(|i| (key(i), i.as_path())).collect();
+    let originals: HashMap<String, &Path> = inputs.iter().map(|(i, _)| (key(i), i.as_path())).collect();
     for job in &jobs {
         let key = key(&job.output);
         if let Some(input) = originals.get(&key) {
@@ -194,11 +212,15 @@ fn fill(
 /// Camera and date (2026-05-01) as they can stand in a file name.
 fn header(input: &Path) -> Option<(String, String)> {
     let bytes = crate::files::read(input).ok()?;
-    let capture = raw::header(&bytes, &raw::Limits::default()).ok()?;
+    raw::header(&bytes, &raw::Limits::default()).ok().map(|capture| header_of(&capture))
+}
+
+/// Camera and date of a capture as they can stand in a file name.
+pub(crate) fn header_of(capture: &photo::Capture) -> (String, String) {
     let clean = |s: String| s.replace(|c: char| !c.is_alphanumeric() && c != '-' && c != '.', "_");
     let date = capture.metadata.text(Directory::Exif, tag::DATE_TIME_ORIGINAL).and_then(|d| d.get(..10));
     let date = date.map_or_else(|| "undated".to_owned(), |d| d.replace(':', "-"));
-    Some((clean(capture.camera.name()), clean(date)))
+    (clean(capture.camera.name()), clean(date))
 }
 
 #[cfg(test)]
@@ -206,8 +228,8 @@ mod tests {
     use super::*;
 
     fn outputs(inputs: &[&str], target: Target) -> Result<Vec<String>, NamingError> {
-        let inputs: Vec<PathBuf> = inputs.iter().map(PathBuf::from).collect();
-        let jobs = plan_outputs(&inputs, &target, Format::Jpeg)?;
+        let inputs: Vec<_> = inputs.iter().map(|i| (PathBuf::from(i), Format::Jpeg)).collect();
+        let jobs = plan_outputs(&inputs, &target)?;
         Ok(jobs.iter().map(|j| j.output.display().to_string()).collect())
     }
 
@@ -226,6 +248,13 @@ mod tests {
         );
         let wrong = outputs(&["1.nef"], Target::parse("{name}.jpg")).unwrap_err();
         assert!(wrong.to_string().contains("{stem}"), "{wrong}");
+    }
+
+    #[test]
+    fn each_input_has_the_ending_of_its_own_format() {
+        let inputs = [("x.nef".into(), Format::Jpeg), ("x.dng".into(), Format::Png)];
+        let jobs = plan_outputs(&inputs, &Target::parse("out/{stem}.{ext}")).unwrap();
+        assert_eq!((&jobs[0].output, &jobs[1].output), (&"out/x.jpg".into(), &"out/x.png".into()));
     }
 
     #[test]

@@ -54,6 +54,8 @@ pub struct Settings {
     pub limits: Limits,
     /// Whether existing outputs are replaced.
     pub overwrite: bool,
+    /// Folder for unfinished outputs, on the disk of the outputs; beside each output if none.
+    pub scratch: Option<PathBuf>,
 }
 
 /// Settings that contradict each other. Each message says what to do.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
 
+mod batch;
 mod broken;
 mod chart;
 mod engines;
@@ -13,8 +14,10 @@ mod metadata;
 mod outputs;
 mod profile_commands;
 mod profiles;
+mod recipe;
 mod stopped;
 mod usage;
+mod watch;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

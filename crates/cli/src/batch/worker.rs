@@ -1,0 +1,21 @@
+//! The worker process: not for people.
+
+use std::io::{BufReader, stdin, stdout};
+
+use anyhow::Result;
+use clap::Args;
+
+use crate::Outcome;
+
+/// Take tasks on stdin: what `batch` and `watch` start to develop files
+#[derive(Debug, Args)]
+#[command(hide = true)]
+pub(crate) struct Worker {}
+
+impl Worker {
+    pub(crate) fn run(self) -> Result<Outcome> {
+        // Faults of profiles were told by the parent.
+        darkroot::batch::serve(BufReader::new(stdin()), stdout().lock(), &super::store())?;
+        Ok(Outcome::Done)
+    }
+}

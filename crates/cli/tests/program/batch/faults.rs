@@ -1,0 +1,235 @@
+//! One bad thing costs one file, or stops everything in order.
+
+use darkroot::ProfileStore;
+use darkroot::batch::{self, Batch, CrewOptions, Event, PlanOptions, Recipes, Search, Session, Stop};
+use darkroot::recipe::{Layer, Layers};
+
+use super::*;
+
+#[test]
+fn bad_files_are_named_and_the_rest_goes_on() {
+    let desk = Desk::with_tree();
+    desk.put("in/garbage.nef", "no raw file");
+    desk.put("in/empty.dng", "");
+    desk.put("in/short.nef", &small_nef()[..small_nef().len() / 2]);
+    std::fs::create_dir_all(desk.path("in/folder.nef")).unwrap();
+    let run = desk.batch(&["--json"]);
+    assert_eq!((run.code, summary(&run)), (1, [4, 0, 3, 0]), "{}", run.err);
+    for name in ["garbage.nef", "empty.dng", "short.nef"] {
+        assert_eq!(run.err.matches(&format!("error: in/{name}: ")).count(), 1, "{name}: {}", run.err);
+    }
+    assert!(desk.left_over().is_empty(), "{:?}", desk.left_over());
+    let status = desk.run(&["batch", "status", "out"]);
+    assert_eq!((status.code, status.out.matches("failed: ").count()), (1, 3), "{}", status.out);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_may_not_be_read_or_written_is_said() {
+    use std::os::unix::fs::PermissionsExt;
+    let desk = Desk::with_tree();
+    let close = |name: &str, mode| {
+        std::fs::set_permissions(desk.path(name), std::fs::Permissions::from_mode(mode)).unwrap();
+    };
+    close("in/a.dng", 0o000);
+    std::fs::create_dir_all(desk.path("out/day 2")).unwrap();
+    close("out/day 2", 0o555);
+    if std::fs::read(desk.path("in/a.dng")).is_ok() {
+        eprintln!("skipped: this user may do everything");
+        close("out/day 2", 0o755);
+        return;
+    }
+    let run = desk.batch(&["--json"]);
+    close("out/day 2", 0o755);
+    assert_eq!((run.code, summary(&run)), (1, [2, 0, 2, 0]), "{}", run.err);
+    assert_eq!(run.err.matches("permission denied").count(), 2, "{}", run.err);
+}
+
+#[test]
+fn a_file_that_takes_too_long_is_given_up() {
+    let desk = Desk::new();
+    let path = sample("still-life.nef");
+    desk.put("in/slow.nef", std::fs::read(path).unwrap());
+    let run = desk.batch(&["--json", "--timeout", "1ms"]);
+    assert_eq!((run.code, summary(&run)), (1, [0, 0, 1, 0]), "{}", run.err);
+    assert!(
+        run.err.contains("slow.nef: took longer than 1ms") && run.err.contains("--timeout"),
+        "{}",
+        run.err
+    );
+    assert_eq!(summary(&desk.batch(&["--json"])), [1, 0, 0, 0]);
+}
+
+#[test]
+fn a_file_that_is_too_large_for_the_memory_is_given_up() {
+    let desk = Desk::with_tree();
+    let run = desk.batch(&["--json", "--memory", "60M"]);
+    assert_eq!((run.code, summary(&run)), (1, [0, 0, 4, 0]), "{}", run.err);
+    assert_eq!(run.err.matches("give more with `--memory`").count(), 4, "{}", run.err);
+    assert_eq!(summary(&desk.batch(&["--json", "--memory", "100M"])), [4, 0, 0, 0]);
+}
+
+/// Runs a batch with the program in place of `sh -c SCRIPT` as worker; the outcome of each file.
+#[cfg(unix)]
+fn with_worker(desk: &Desk, script: &str) -> Vec<(String, Result<(), String>)> {
+    let program = env!("CARGO_BIN_EXE_darkroot");
+    let options = PlanOptions::into(&desk.path("out"));
+    let mut crew =
+        CrewOptions::new("sh".into(), vec!["-c".into(), script.into(), "sh".into(), program.into()]);
+    (crew.jobs, crew.threads) = (2, 2);
+    let search = Search { inputs: vec![desk.path("in").to_str().unwrap().into()], ..Search::default() };
+    let mut recipes = Recipes::new(Layers::new(None, Layer::flags([]).unwrap(), true).unwrap());
+    let mut run = Batch::open(&options, crew, ProfileStore::builtin()).unwrap();
+    let sources = batch::find(&search, &desk.path("out")).unwrap();
+    let stop = Stop::default();
+    let plan = run.plan(sources, &options, &mut recipes, &Session::default(), &stop).unwrap();
+    let mut outcomes = Vec::new();
+    run.run(&plan, &stop, &mut |event| match event {
+        Event::Done { item, .. } => outcomes.push((item.source.key.clone(), Ok(()))),
+        Event::Failed { item, error } => outcomes.push((item.source.key.clone(), Err(error.to_owned()))),
+        _ => {}
+    })
+    .unwrap();
+    outcomes.sort_by(|a, b| a.0.cmp(&b.0));
+    outcomes
+}
+
+#[cfg(unix)]
+#[test]
+fn a_worker_that_crashes_costs_the_file_it_had() {
+    let desk = Desk::with_tree();
+    desk.put("in/hostile.nef", small_nef());
+    // The worker's whole process group goes when it is handed the hostile file, as by an abort in a decoder.
+    let script = "while read -r line; do case $line in *hostile*) kill -ABRT 0;; esac; echo \"$line\"; done | \"$1\" worker";
+    let outcomes = with_worker(&desk, script);
+    assert_eq!(outcomes.len(), 5, "{outcomes:?}");
+    for (name, outcome) in outcomes {
+        match outcome {
+            Ok(()) => assert_ne!(name, "hostile.nef"),
+            Err(error) => {
+                assert_eq!(name, "hostile.nef", "{error}");
+                assert!(error.contains("crashed"), "{error}");
+            }
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_worker_that_is_ended_by_accident_costs_nothing() {
+    let desk = Desk::with_tree();
+    // The first worker that gets a file is killed, as when memory runs out; its file is innocent.
+    let mark = desk.path("killed-once");
+    let script = format!(
+        "while read -r line; do if mkdir '{}' 2>/dev/null; then kill -KILL 0; fi; echo \"$line\"; done | \"$1\" worker",
+        mark.display()
+    );
+    let outcomes = with_worker(&desk, &script);
+    assert!(mark.is_dir());
+    assert_eq!(outcomes.len(), 4);
+    assert!(outcomes.iter().all(|(_, outcome)| outcome.is_ok()), "{outcomes:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_worker_that_talks_nonsense_is_a_fault_of_one_file_after_the_other() {
+    let desk = Desk::with_tree();
+    let outcomes = with_worker(&desk, "read -r line; echo nonsense");
+    assert_eq!(outcomes.len(), 4);
+    assert!(outcomes.iter().all(|(_, outcome)| outcome.is_err()), "{outcomes:?}");
+}
+
+/// Starts a batch of many files with one worker and lets `act` do something when the first is done.
+fn while_running(desk: &Desk, files: usize, act: impl FnOnce(&Desk)) -> Run {
+    use std::io::{BufRead, BufReader, Read};
+    for i in 0..files {
+        desk.put(&format!("in/{i:03}.nef"), small_nef());
+    }
+    let arguments = ["batch", "in", "-o", "out", "--json", "--jobs", "1"];
+    let mut command = desk.command(&arguments);
+    let mut child =
+        command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let mut out = BufReader::new(child.stdout.take().unwrap());
+    let mut text = String::new();
+    while !text.contains("\"event\":\"done\"") {
+        assert!(out.read_line(&mut text).unwrap() > 0, "nothing was done: {text}");
+    }
+    act(desk);
+    out.read_to_string(&mut text).unwrap();
+    let mut output = child.wait_with_output().unwrap();
+    output.stdout = text.into_bytes();
+    Run::of(&output, &arguments)
+}
+
+#[test]
+fn inputs_that_go_away_or_are_cut_meanwhile_are_named() {
+    let desk = Desk::new();
+    let run = while_running(&desk, 60, |desk| {
+        std::fs::remove_file(desk.path("in/059.nef")).unwrap();
+        desk.put("in/058.nef", &small_nef()[..small_nef().len() / 2]);
+    });
+    assert_eq!((run.code, summary(&run)), (1, [58, 0, 2, 0]), "{}", run.err);
+    assert!(run.err.contains("in/059.nef: cannot be read: there is no such file"), "{}", run.err);
+    assert!(run.err.contains("error: in/058.nef: "), "{}", run.err);
+}
+
+#[test]
+fn an_output_folder_that_vanishes_stops_the_run_in_order() {
+    let desk = Desk::new();
+    let run = while_running(&desk, 200, |desk| std::fs::remove_dir_all(desk.path("out")).unwrap_or_default());
+    assert_eq!(run.code, 1, "{}", run.err);
+    assert_eq!(run.err.matches("the output folder is gone").count(), 1, "{}", run.err);
+    let [done, _, failed, left] = summary(&run);
+    assert!(left > 0 && failed <= 2 && done + failed + left == 200, "{done} {failed} {left}");
+}
+
+/// Runs a script as the owner of everything, with a place to mount disks.
+#[cfg(target_os = "linux")]
+fn as_owner(desk: &Desk, script: &str) -> Option<Output> {
+    let can = Command::new("unshare").args(["-rm", "sh", "-c", "mount -t tmpfs tmpfs /mnt"]).output();
+    if !can.is_ok_and(|o| o.status.success()) {
+        eprintln!("skipped: no disk can be mounted here");
+        return None;
+    }
+    let mut command = Command::new("unshare");
+    command.args(["-rm", "sh", "-c", script, "sh", env!("CARGO_BIN_EXE_darkroot")]);
+    desk.prepare(&mut command);
+    Some(command.output().unwrap())
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_stops_the_run_and_the_next_one_goes_on() {
+    let desk = Desk::new();
+    for i in 0..40 {
+        desk.put(&format!("in/{i:02}.nef"), small_nef());
+    }
+    std::fs::create_dir_all(desk.path("out")).unwrap();
+    // Pictures of about 18 kB as TIFF: some 8 find room.
+    let script = "mount -t tmpfs -o size=200k tmpfs out || exit 9
+        \"$1\" batch in -o out --format tiff --json >full.json 2>full.err; echo $? >full.code
+        find out -type f >full.files
+        mount -o remount,size=20m out
+        \"$1\" batch in -o out --format tiff --json >more.json 2>more.err; echo $? >more.code
+        find out -type f >more.files; cat out/.darkroot/journal.jsonl >journal";
+    let Some(output) = as_owner(&desk, script) else { return };
+    assert!(output.status.success(), "{output:?}");
+    let text = |name: &str| String::from_utf8(desk.read(name)).unwrap();
+    let run = |name: &str| Run {
+        code: text(&format!("{name}.code")).trim().parse().unwrap(),
+        out: text(&format!("{name}.json")),
+        err: text(&format!("{name}.err")),
+    };
+    let full = run("full");
+    let [done, _, failed, left] = summary(&full);
+    assert_eq!((full.code, failed), (1, 0), "{}", full.err);
+    assert!(done > 0 && left > 0 && done + left == 40, "{done} {left}: {}", full.err);
+    assert!(full.err.contains("full") || full.err.contains("No space"), "{}", full.err);
+    assert!(!text("full.files").contains(".part"), "{}", text("full.files"));
+    let more = run("more");
+    assert_eq!((more.code, more.err.contains("error")), (0, false), "{}", more.err);
+    let [more_done, unchanged, ..] = summary(&more);
+    assert_eq!(more_done + unchanged, 40);
+    assert!(unchanged >= done);
+    assert_eq!(text("more.files").lines().count(), 41, "{}", text("more.files"));
+}
