@@ -449,5 +449,9 @@ fn signal(_: &ExitStatus) -> Option<i32> {
 /// Bytes for people.
 pub fn megabytes(bytes: u64) -> String {
     let mega = bytes as f64 / 1e6;
-    if mega >= 1000.0 { format!("{:.1} GB", mega / 1000.0) } else { format!("{mega:.0} MB") }
+    match mega {
+        m if m >= 1000.0 => format!("{:.1} GB", m / 1000.0),
+        m if m >= 1.0 => format!("{m:.0} MB"),
+        m => format!("{:.0} kB", m * 1000.0),
+    }
 }
