@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
+use darkroot::batch::history::{History, Known};
 use darkroot::batch::journal;
 use serde_json::json;
 
@@ -24,7 +25,7 @@ pub(crate) struct Status {
 
 impl Status {
     pub(crate) fn run(self) -> Result<Outcome> {
-        let mut all = journal::History::default();
+        let mut all = History::default();
         let mut out = std::io::stdout().lock();
         for (name, history) in journal::read_all(&self.out)? {
             let Counts { done, failed, open } = counts(&history);
@@ -66,8 +67,8 @@ struct Counts {
     open: usize,
 }
 
-fn counts(history: &journal::History) -> Counts {
-    let count = |of: fn(&journal::Known) -> bool| history.outputs.values().filter(|k| of(k)).count();
+fn counts(history: &History) -> Counts {
+    let count = |of: fn(&Known) -> bool| history.outputs.values().filter(|k| of(k)).count();
     Counts {
         done: count(|k| k.done.is_some() && k.failed.is_none() && !k.open),
         failed: count(|k| k.failed.is_some()),

@@ -249,8 +249,8 @@ mod tests {
                     budget.reading(place, size);
                     at[place] = Some((size, need));
                 }
-                for i in 0..at.len() {
-                    if let (Some((size, need)), Phase::Reading) = (at[i], budget.places[i].phase) {
+                for (i, file) in at.iter().enumerate() {
+                    if let (Some((size, need)), Phase::Reading) = (*file, budget.places[i].phase) {
                         budget.waits(i, size, need);
                     }
                 }

@@ -2,20 +2,21 @@
 
 use std::collections::VecDeque;
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader, Write};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::budget::{Budget, Phase};
+use super::process::{Ended, Process};
 use super::stop::Stop;
 use super::system;
 use super::task::{Answer, Order, Task, Trouble, TroubleKind};
 
 /// How often time-outs and wishes to stop are looked at.
 const BEAT: Duration = Duration::from_millis(50);
+
+/// How long a process whose answers have ended may take to end itself.
+const LAST_MOMENT: Duration = Duration::from_millis(200);
 
 /// Memory of the process that the crew works for.
 const PARENT: u64 = 32 << 20;
@@ -100,17 +101,11 @@ pub(super) struct Crew {
 
 #[derive(Default)]
 struct Slot {
-    process: Option<Process>,
+    /// With its number.
+    process: Option<(u64, Process)>,
     work: Option<(Work, Instant)>,
     /// The work's end was told already; the worker still has to let go of it.
     told: bool,
-}
-
-struct Process {
-    child: Child,
-    stdin: ChildStdin,
-    generation: u64,
-    last_words: Arc<Mutex<String>>,
 }
 
 impl Crew {
@@ -160,7 +155,7 @@ impl Crew {
     }
 
     fn is_current(&self, slot: usize, generation: u64) -> bool {
-        self.slots[slot].process.as_ref().is_some_and(|p| p.generation == generation)
+        self.slots[slot].process.as_ref().is_some_and(|(number, _)| *number == generation)
     }
 
     /// Gives tasks to idle workers, as far as there is room for their files.
@@ -197,51 +192,18 @@ impl Crew {
         if self.slots[slot].process.is_some() {
             return Ok(());
         }
-        let (program, arguments) = &self.options.worker;
-        let mut command = Command::new(program);
-        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        #[cfg(unix)]
-        {
-            // An interrupt at the keyboard is for the parent, which lets files be finished.
-            use std::os::unix::process::CommandExt;
-            command.process_group(0);
-        }
-        let mut child = command.spawn()?;
-        let missing = || std::io::Error::from(std::io::ErrorKind::BrokenPipe);
-        let stdin = child.stdin.take().ok_or_else(missing)?;
-        let stdout = child.stdout.take().ok_or_else(missing)?;
-        let stderr = child.stderr.take().ok_or_else(missing)?;
         self.generation += 1;
         let generation = self.generation;
         let sender = self.sender.clone();
-        std::thread::spawn(move || {
-            for line in BufReader::new(stdout).lines() {
-                let answer = line.ok().and_then(|l| serde_json::from_str(&l).ok());
-                let gone = answer.is_none();
-                if sender.send((slot, generation, answer)).is_err() || gone {
-                    return;
-                }
-            }
-            let _ = sender.send((slot, generation, None));
-        });
-        let last_words = Arc::new(Mutex::new(String::new()));
-        let heard = Arc::clone(&last_words);
-        std::thread::spawn(move || {
-            for line in BufReader::new(stderr).lines().map_while(Result::ok) {
-                *heard.lock().unwrap_or_else(PoisonError::into_inner) = line;
-            }
-        });
-        self.slots[slot].process = Some(Process { child, stdin, generation, last_words });
+        let hear = move |answer| sender.send((slot, generation, answer)).is_ok();
+        let (program, arguments) = &self.options.worker;
+        self.slots[slot].process = Some((generation, Process::start(program, arguments, hear)?));
         Ok(())
     }
 
-    /// A worker that cannot be reached is dead, and says so by the end of its answers.
     fn send(&mut self, slot: usize, order: &Order) {
-        if let Some(process) = &mut self.slots[slot].process
-            && let Ok(mut line) = serde_json::to_vec(order)
-        {
-            line.push(b'\n');
-            let _ = process.stdin.write_all(&line).and_then(|()| process.stdin.flush());
+        if let Some((_, process)) = &mut self.slots[slot].process {
+            process.send(order);
         }
     }
 
@@ -363,7 +325,7 @@ impl Crew {
                 continue;
             }
             let name = self.slots[slot].work.as_ref().map(|(w, _)| w.task.input().display().to_string());
-            self.fire(slot);
+            self.fire(slot, Duration::ZERO);
             let error = format!(
                 "{}: took longer than {}; give it more time with `--timeout`",
                 name.unwrap_or_default(),
@@ -373,14 +335,9 @@ impl Crew {
         }
     }
 
-    /// Ends a process and collects it.
-    fn fire(&mut self, slot: usize) -> Option<(ExitStatus, String)> {
-        let mut process = self.slots[slot].process.take()?;
-        // It may have ended by itself.
-        let _ = process.child.kill();
-        let status = process.child.wait().ok()?;
-        let words = process.last_words.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        Some((status, words))
+    /// Ends a process, if there is one, after so long.
+    fn fire(&mut self, slot: usize, patience: Duration) -> Option<Ended> {
+        self.slots[slot].process.take().and_then(|(_, process)| process.end(patience))
     }
 
     /// Why a worker died, in one sentence.
@@ -388,15 +345,14 @@ impl Crew {
         let name = self.slots[slot].work.as_ref().map(|(w, _)| w.task.input().display().to_string());
         let name = name.unwrap_or_default();
         // The end of its answers comes a moment before its end.
-        let ended = self.slots[slot].process.as_mut().and_then(|p| ended(&mut p.child));
-        let words = self.fire(slot).map(|(_, words)| words).unwrap_or_default();
-        let error = if words.contains("memory allocation") {
+        let ended = self.fire(slot, LAST_MOMENT);
+        let error = if ended.as_ref().is_some_and(|e| e.last_words.contains("memory allocation")) {
             format!(
                 "{name}: took more memory than such a file should; it is damaged, or give more with `--memory`"
             )
         } else {
-            match ended.map(|status| signal(&status)) {
-                Some(Some(9)) => format!(
+            match ended.and_then(|e| e.signal) {
+                Some(9) => format!(
                     "{name}: the system ended the process that worked on it, most likely for want of memory; give \
                      less with `--memory` or `--jobs`, and run again"
                 ),
@@ -412,7 +368,7 @@ impl Crew {
     /// Ends everyone at once.
     pub(super) fn kill(&mut self) {
         for slot in 0..self.slots.len() {
-            self.fire(slot);
+            self.fire(slot, Duration::ZERO);
             self.free(slot);
         }
     }
@@ -422,28 +378,6 @@ impl Drop for Crew {
     fn drop(&mut self) {
         self.kill();
     }
-}
-
-/// Waits a little for a process that is about to end.
-fn ended(child: &mut Child) -> Option<ExitStatus> {
-    for _ in 0..40 {
-        match child.try_wait() {
-            Ok(Some(status)) => return Some(status),
-            Ok(None) => std::thread::sleep(Duration::from_millis(5)),
-            Err(_) => return None,
-        }
-    }
-    None
-}
-
-#[cfg(unix)]
-fn signal(status: &ExitStatus) -> Option<i32> {
-    std::os::unix::process::ExitStatusExt::signal(status)
-}
-
-#[cfg(not(unix))]
-fn signal(_: &ExitStatus) -> Option<i32> {
-    None
 }
 
 /// Bytes for people.

@@ -1,6 +1,6 @@
 //! How long a batch will take, roughly.
 
-use super::journal::History;
+use super::history::History;
 use super::plan::{Plan, State};
 
 /// CPU seconds per megabyte of raw file, where no journal tells: 24 MP of losslessly compressed NEF to JPEG.

@@ -4,245 +4,19 @@
 //! ends with a checksum of itself. A power cut can tear the last line; a torn or damaged line is left where it is and
 //! skipped, and counts as never written. The first line names the format and its version.
 
-use std::collections::HashMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+
+use super::history::History;
+use super::record::Record;
 
 /// Folder inside the output folder that holds journals and unfinished outputs.
 pub const FOLDER: &str = ".darkroot";
 /// Version of the format that this program writes and reads.
 const VERSION: u32 = 1;
-
-/// What a file was when it was read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Identity {
-    /// Size in bytes.
-    pub size: u64,
-    /// Time of its last change, nanoseconds since 1970.
-    pub modified: i64,
-    /// SHA-256 of its content, hexadecimal.
-    pub sha256: String,
-}
-
-/// The camera of a file by all its names, as [`photo::Camera`].
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct CameraNames {
-    /// As written in the file.
-    pub make: String,
-    /// As written in the file.
-    pub model: String,
-    /// The maker's common name.
-    pub common_make: String,
-    /// The model's common name.
-    pub common_model: String,
-}
-
-impl From<&photo::Camera> for CameraNames {
-    fn from(c: &photo::Camera) -> Self {
-        Self {
-            make: c.make.clone(),
-            model: c.model.clone(),
-            common_make: c.common_make.clone(),
-            common_model: c.common_model.clone(),
-        }
-    }
-}
-
-impl From<&CameraNames> for photo::Camera {
-    fn from(c: &CameraNames) -> Self {
-        Self {
-            make: c.make.clone(),
-            model: c.model.clone(),
-            common_make: c.common_make.clone(),
-            common_model: c.common_model.clone(),
-        }
-    }
-}
-
-/// A file that was developed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Done {
-    /// The input's path below its root, with forward slashes.
-    pub input: String,
-    /// The output's path below the output folder, with forward slashes.
-    pub output: String,
-    /// What the input was.
-    pub source: Identity,
-    /// SHA-256 of the settings.
-    pub settings: String,
-    /// Its camera.
-    pub camera: CameraNames,
-    /// SHA-256 of the profile that gave the colours; empty for the file's own matrices.
-    pub profile: String,
-    /// What the output is.
-    pub written: Identity,
-    /// Width of the picture in pixels.
-    pub width: usize,
-    /// Height of the picture in pixels.
-    pub height: usize,
-    /// Seconds from reading to the finished output.
-    pub seconds: f64,
-    /// What had to be assumed.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-    /// Number of the input, where names carry one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub number: Option<usize>,
-    /// Version of Darkroot.
-    pub program: String,
-    /// When, RFC 3339, UTC.
-    pub at: String,
-}
-
-/// A file that failed.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Failed {
-    /// The input's path below its root.
-    pub input: String,
-    /// The output that was meant.
-    pub output: String,
-    /// One sentence: what is wrong and what to do.
-    pub error: String,
-    /// Whether its worker died, so that an output may stand there all the same.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub died: bool,
-    /// Version of Darkroot.
-    pub program: String,
-    /// When, RFC 3339, UTC.
-    pub at: String,
-}
-
-/// One line.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "event", rename_all = "kebab-case")]
-pub enum Record {
-    /// The first line.
-    Journal {
-        /// Version of the format.
-        version: u32,
-        /// Version of Darkroot that began it.
-        program: String,
-    },
-    /// A file is about to be developed: from here on what appears at `output` is this journal's.
-    Begun {
-        /// The input's path below its root.
-        input: String,
-        /// The output's path below the output folder.
-        output: String,
-        /// Number of the input, where names carry one.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        number: Option<usize>,
-    },
-    /// It is done.
-    Done(Box<Done>),
-    /// It failed.
-    Failed(Failed),
-    /// It vanished after it was begun, and was not developed.
-    Gone {
-        /// The input's path below its root.
-        input: String,
-        /// The output that was meant.
-        output: String,
-    },
-    /// A chart was looked for in a file, for the colours of its session.
-    Looked(super::session::Looked),
-}
-
-/// What is known about one output.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Known {
-    /// Whether it was begun and nothing was heard of it since: what is at its place is this journal's.
-    pub open: bool,
-    /// The last time it was done.
-    pub done: Option<Done>,
-    /// How it failed, if that was the last that happened.
-    pub failed: Option<Failed>,
-}
-
-/// All that a journal says.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct History {
-    /// By output.
-    pub outputs: HashMap<String, Known>,
-    /// Number by input, where names carry one.
-    pub numbers: HashMap<String, usize>,
-    /// Charts that were looked for, by input.
-    pub looked: HashMap<String, super::session::Looked>,
-    /// Lines that were torn or damaged.
-    pub damaged: usize,
-}
-
-impl History {
-    /// What all journals of an output folder say together; nothing where there is none.
-    ///
-    /// # Errors
-    /// Journals that cannot be read or are of a later version.
-    pub fn of(out: &Path) -> Result<Self, JournalError> {
-        let mut all = Self::default();
-        if out.join(FOLDER).is_dir() {
-            for (_, history) in read_all(out)? {
-                all.merge(history);
-            }
-        }
-        Ok(all)
-    }
-
-    pub(super) fn add(&mut self, record: Record) {
-        match record {
-            Record::Journal { .. } => {}
-            Record::Begun { input, output, number } => {
-                self.outputs.entry(output).or_default().open = true;
-                if let Some(number) = number {
-                    self.numbers.insert(input, number);
-                }
-            }
-            Record::Done(done) => {
-                let known = self.outputs.entry(done.output.clone()).or_default();
-                *known = Known { done: Some(*done), ..Known::default() };
-            }
-            Record::Failed(failed) => {
-                let known = self.outputs.entry(failed.output.clone()).or_default();
-                known.open = failed.died;
-                known.failed = Some(failed);
-            }
-            Record::Gone { output, .. } => {
-                if let Some(known) = self.outputs.get_mut(&output) {
-                    known.open = false;
-                    if known.done.is_none() {
-                        self.outputs.remove(&output);
-                    }
-                }
-            }
-            Record::Looked(looked) => {
-                self.looked.insert(looked.input.clone(), looked);
-            }
-        }
-    }
-
-    /// Adds what another journal says, as journals of shards are added up.
-    pub fn merge(&mut self, other: Self) {
-        for (output, known) in other.outputs {
-            let mine = self.outputs.entry(output).or_default();
-            mine.open |= known.open;
-            let newer = match (&mine.done, &known.done) {
-                (Some(a), Some(b)) => b.at >= a.at,
-                (None, _) => true,
-                (_, None) => false,
-            };
-            if newer {
-                mine.done = known.done;
-                mine.failed = known.failed;
-            }
-        }
-        self.numbers.extend(other.numbers);
-        self.looked.extend(other.looked);
-        self.damaged += other.damaged;
-    }
-}
 
 /// Why a journal cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -437,6 +211,7 @@ pub(crate) fn now() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::batch::record::{CameraNames, Done, Identity};
 
     fn done(output: &str) -> Record {
         let identity = Identity { size: 3, modified: 1_700_000_000_123_456_789, sha256: "ab".into() };

@@ -30,7 +30,12 @@ pub mod find;
 pub use find::{FindError, Search, Source, Sources, find};
 
 pub mod journal;
-pub use journal::{History, JournalError};
+pub use journal::JournalError;
+
+pub mod record;
+
+pub mod history;
+pub use history::History;
 
 pub mod names;
 
@@ -67,7 +72,9 @@ pub use sheet::Sheet;
 mod budget;
 pub mod hash;
 mod need;
+mod process;
 mod settle;
+mod state;
 pub mod system;
 mod task;
 mod thumbnail;

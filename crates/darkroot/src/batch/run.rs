@@ -6,8 +6,10 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use super::crew::{Crew, CrewOptions, Moment, Next, Work};
 use super::find::{Source, Sources, modified};
-use super::journal::{self, Done, Failed, History, Journal, JournalError, Record};
+use super::history::History;
+use super::journal::{self, Journal, JournalError};
 use super::plan::{Item, Plan, PlanError, PlanOptions, Recipes, State, Why, plan};
+use super::record::{Done, Failed, Record};
 use super::session::Session;
 use super::stop::Stop;
 use super::task::{Answer, Develop, Developed, Task, Trouble, TroubleKind};
@@ -253,7 +255,7 @@ impl Batch {
             .map_err(BatchError::Worker)?;
         let mut summary = run.summary;
         summary.left = todo - (summary.done - before.0) - (summary.failed - before.1) - summary.gone;
-        summary.interrupted = stop.asked();
+        summary.interrupted = stop.asked() && summary.left > 0;
         summary.seconds = start.elapsed().as_secs_f64();
         self.clear_scratch();
         Ok(summary)

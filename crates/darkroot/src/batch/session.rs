@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::crew::{Crew, Moment, Next, Work};
 use super::find::{Source, Sources};
-use super::journal::{CameraNames, Identity, JournalError};
+use super::journal::JournalError;
+use super::record::{CameraNames, Identity};
 use super::run::BatchError;
 use super::stop::Stop;
 use super::task::{Answer, Task};

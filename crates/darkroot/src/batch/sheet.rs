@@ -124,7 +124,7 @@ impl Sheet {
             write_text(path, &self.to_json(plan, summary), true)?;
         }
         for path in self.html.clone() {
-            let page = self.to_html(plan, summary, &path).map_err(|e| Error::write(&path, &e))?;
+            let page = self.page(plan, summary, &path).map_err(|e| Error::write(&path, &e))?;
             write_text(&path, &page, true)?;
         }
         Ok(())
@@ -156,7 +156,7 @@ impl Sheet {
         format!("{value:#}\n")
     }
 
-    fn to_html(&mut self, plan: &Plan, summary: &Summary, place: &Path) -> io::Result<String> {
+    fn page(&mut self, plan: &Plan, summary: &Summary, place: &Path) -> io::Result<String> {
         let Summary { done, failed, skipped, left, seconds, .. } = summary;
         let mega = summary.pixels as f64 / 1e6;
         let mut page = format!(

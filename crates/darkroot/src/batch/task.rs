@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::journal::{CameraNames, Identity};
+use super::record::{CameraNames, Identity};
 use super::session::{SessionColour, Sight};
 
 /// To a worker.

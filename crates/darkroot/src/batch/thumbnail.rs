@@ -7,7 +7,7 @@ use photo::{Metadata, Picture, PictureSpace, Samples, Size};
 /// Longest side in pixels.
 const LONGEST: usize = 240;
 /// Pixels of a box that are looked at, each way.
-const LOOKS: usize = 4;
+const LOOKS: usize = 3;
 /// JPEG quality.
 const QUALITY: u8 = 78;
 

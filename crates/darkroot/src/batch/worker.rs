@@ -8,7 +8,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::find::modified;
-use super::journal::{CameraNames, Identity};
+use super::record::{CameraNames, Identity};
 use super::task::{Answer, Develop, Developed, Header, Order, Task, Trouble, TroubleKind};
 use super::{hash, need, session, thumbnail};
 use crate::job::develop_bytes;

@@ -1,0 +1,100 @@
+//! What is known from a journal, or from all journals of an output folder.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::journal::{FOLDER, JournalError, read_all};
+use super::record::{Done, Failed, Record};
+use super::session::Looked;
+
+/// What is known about one output.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Known {
+    /// Whether it was begun and nothing was heard of it since: what is at its place is this journal's.
+    pub open: bool,
+    /// The last time it was done.
+    pub done: Option<Done>,
+    /// How it failed, if that was the last that happened.
+    pub failed: Option<Failed>,
+}
+
+/// All that a journal says.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct History {
+    /// By output.
+    pub outputs: HashMap<String, Known>,
+    /// Number by input, where names carry one.
+    pub numbers: HashMap<String, usize>,
+    /// Charts that were looked for, by input.
+    pub looked: HashMap<String, Looked>,
+    /// Lines that were torn or damaged.
+    pub damaged: usize,
+}
+
+impl History {
+    /// What all journals of an output folder say together; nothing where there is none.
+    ///
+    /// # Errors
+    /// Journals that cannot be read or are of a later version.
+    pub fn of(out: &Path) -> Result<Self, JournalError> {
+        let mut all = Self::default();
+        if out.join(FOLDER).is_dir() {
+            for (_, history) in read_all(out)? {
+                all.merge(history);
+            }
+        }
+        Ok(all)
+    }
+
+    pub(super) fn add(&mut self, record: Record) {
+        match record {
+            Record::Journal { .. } => {}
+            Record::Begun { input, output, number } => {
+                self.outputs.entry(output).or_default().open = true;
+                if let Some(number) = number {
+                    self.numbers.insert(input, number);
+                }
+            }
+            Record::Done(done) => {
+                let known = self.outputs.entry(done.output.clone()).or_default();
+                *known = Known { done: Some(*done), ..Known::default() };
+            }
+            Record::Failed(failed) => {
+                let known = self.outputs.entry(failed.output.clone()).or_default();
+                known.open = failed.died;
+                known.failed = Some(failed);
+            }
+            Record::Gone { output, .. } => {
+                if let Some(known) = self.outputs.get_mut(&output) {
+                    known.open = false;
+                    if known.done.is_none() {
+                        self.outputs.remove(&output);
+                    }
+                }
+            }
+            Record::Looked(looked) => {
+                self.looked.insert(looked.input.clone(), looked);
+            }
+        }
+    }
+
+    /// Adds what another journal says, as journals of shards are added up.
+    pub fn merge(&mut self, other: Self) {
+        for (output, known) in other.outputs {
+            let mine = self.outputs.entry(output).or_default();
+            mine.open |= known.open;
+            let newer = match (&mine.done, &known.done) {
+                (Some(a), Some(b)) => b.at >= a.at,
+                (None, _) => true,
+                (_, None) => false,
+            };
+            if newer {
+                mine.done = known.done;
+                mine.failed = known.failed;
+            }
+        }
+        self.numbers.extend(other.numbers);
+        self.looked.extend(other.looked);
+        self.damaged += other.damaged;
+    }
+}
