@@ -180,7 +180,7 @@ fn two_lights_make_one_profile_and_a_bracket_under_one_checks_the_sensor() {
     // A stop apart: the simulated sensor is linear.
     let linear = gate(&lines[0]["gates"], "linearity");
     assert!(linear["verdict"] == "good" && linear["value"].as_f64().unwrap() < 0.01, "{linear}");
-    assert!(lines[1]["gates"].as_array().unwrap().is_empty());
+    assert!(lines[1]["gates"].as_array().unwrap().iter().all(|g| g["name"] == "light"));
     let shown = desk.run(&["profile", "show", "p.toml"]).out;
     assert!(shown.contains("D50: xy") && shown.contains("A: xy"), "{shown}");
 }
@@ -210,6 +210,30 @@ fn glare_is_measured_and_taken_out_when_asked() {
     assert!((0.002..0.01).contains(&veil), "{veil}");
     let clean = figures(&profile(&desk, &["--correct-glare", "-o", "b.toml", "--json"]));
     assert!(mean(&clean, "linear") < mean(&figures(&plain), "linear"));
+}
+
+#[test]
+fn a_light_that_was_not_named_is_warned_of() {
+    let desk = desk(&Exposure { light: light("A"), ..daylight() });
+    let named = figures(&profile(&desk, &["-o", "a.toml", "--json"]));
+    let found = gate(&named["gates"], "light");
+    assert!(found["verdict"] == "warning" && found["value"].as_f64().unwrap() > 100.0, "{found}");
+    assert!(found["words"].as_str().unwrap().contains("from D50"), "{found}");
+    let corners = corners();
+    let arguments = ["profile", "chart.dng", "--light", "A", "--corners", &corners, "-o", "b.toml", "--json"];
+    let right = figures(&desk.run(&arguments));
+    assert_eq!(gate(&right["gates"], "light")["verdict"], "good");
+}
+
+#[test]
+fn a_veil_with_a_colour_is_told_by_channel() {
+    let desk = desk(&Exposure { glare: 0.02, noise: None, ..daylight() });
+    let run = profile(&desk, &["-o", "a.toml", "--json"]);
+    let found = figures(&run)["shots"][0]["gates"].clone();
+    let words = gate(&found, "glare")["words"].to_string();
+    assert!(words.contains("(red)") && words.contains("(blue)"), "{words}");
+    let clean = profile(&desk, &["--correct-glare", "-o", "b.toml"]);
+    assert!(clean.err.contains("glare was taken out: "), "{}", clean.err);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::journal::{FOLDER, JournalError, read_all};
 use super::record::{Done, Failed, Record};
-use super::session::Looked;
+use super::session::KnownCharts;
 
 /// What is known about one output.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -25,8 +25,8 @@ pub struct History {
     pub outputs: HashMap<String, Known>,
     /// Number by input, where names carry one.
     pub numbers: HashMap<String, usize>,
-    /// Charts that were looked for, by input.
-    pub looked: HashMap<String, Looked>,
+    /// What is known of charts.
+    pub charts: KnownCharts,
     /// Lines that were torn or damaged.
     pub damaged: usize,
 }
@@ -73,7 +73,10 @@ impl History {
                 }
             }
             Record::Looked(looked) => {
-                self.looked.insert(looked.input.clone(), looked);
+                self.charts.looked.insert(looked.input.clone(), looked);
+            }
+            Record::Calibrated(calibrated) => {
+                self.charts.calibrated.insert(calibrated.input.clone(), calibrated);
             }
         }
     }
@@ -94,7 +97,8 @@ impl History {
             }
         }
         self.numbers.extend(other.numbers);
-        self.looked.extend(other.looked);
+        self.charts.looked.extend(other.charts.looked);
+        self.charts.calibrated.extend(other.charts.calibrated);
         self.damaged += other.damaged;
     }
 }

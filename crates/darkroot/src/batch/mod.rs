@@ -57,8 +57,11 @@ pub use crew::CrewOptions;
 pub mod worker;
 pub use worker::serve;
 
+pub mod outcome;
+pub use outcome::{BatchError, Event, Summary};
+
 pub mod run;
-pub use run::{Batch, BatchError, Event, Summary};
+pub use run::Batch;
 
 pub mod watch;
 pub use watch::{Notice, WatchError, WatchOptions, Watched, watch};

@@ -11,7 +11,7 @@ use super::crew::{Crew, CrewOptions};
 use super::find::{Source, Sources};
 use super::history::History;
 use super::names::{self, Collision, Fields};
-use super::record::Done;
+use super::record::{CameraNames, Done};
 use super::session::SessionColour;
 use super::shard::Shard;
 use super::state::{Profiles, state};
@@ -126,10 +126,19 @@ pub struct Item {
     pub prepared: Arc<Prepared>,
     /// Colours of its session.
     pub session: Arc<Vec<SessionColour>>,
-    /// SHA-256 of the settings.
-    pub hash: String,
     /// What is to be done.
     pub state: State,
+}
+
+impl Item {
+    /// SHA-256 of all that a file of this camera is developed with, without where the profile's file lies.
+    pub(super) fn settings_hash(&self, camera: &CameraNames) -> String {
+        let mut text = self.prepared.canonical.clone();
+        if let Some(c) = self.session.iter().find(|c| c.camera == *camera) {
+            text += &format!("session={} {} {:?}\n", c.chart, c.sha256, c.multipliers);
+        }
+        hash::text(&text)
+    }
 }
 
 /// A batch, ready to run.
@@ -265,8 +274,7 @@ pub(super) fn plan(
         .filter(|((file, _), _)| options.shard.has(&file.key))
         .map(|((source, (_, output)), (prepared, number))| {
             let session = session(&source);
-            let hash = hash::text(&(prepared.canonical.clone() + &session_text(&session)));
-            Item { source, output, number, prepared, session, hash, state: State::Todo(Why::New) }
+            Item { source, output, number, prepared, session, state: State::Todo(Why::New) }
         })
         .collect();
     let mut plan =
@@ -360,14 +368,6 @@ fn target(template: &str) -> Result<Target, PlanError> {
         let path = PathBuf::from(template);
         return Err(crate::NamingError::Format { path }.into());
     })
-}
-
-/// What a session's colours are, without where their files lie.
-fn session_text(session: &[SessionColour]) -> String {
-    session
-        .iter()
-        .map(|c| format!("session={} {:?} {} {:?}\n", c.chart, c.camera, c.sha256, c.multipliers))
-        .collect()
 }
 
 /// The number of each file: the one that it had before, else the next after the largest.

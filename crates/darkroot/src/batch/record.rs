@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::session::Looked;
+use super::session::{Calibrated, Looked};
 
 /// What a file was when it was read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -137,4 +137,6 @@ pub enum Record {
     },
     /// A chart was looked for in a file, for the colours of its session.
     Looked(Looked),
+    /// A profile was made of a chart shot.
+    Calibrated(Calibrated),
 }

@@ -8,9 +8,10 @@ use super::crew::{Crew, CrewOptions, Moment, Next, Work};
 use super::find::{Source, Sources, modified};
 use super::history::History;
 use super::journal::{self, Journal, JournalError};
-use super::plan::{Item, Plan, PlanError, PlanOptions, Recipes, State, Why, plan};
+use super::outcome::{BatchError, Event, Summary};
+use super::plan::{Item, Plan, PlanOptions, Recipes, State, Why, plan};
 use super::record::{Done, Failed, Record};
-use super::session::Session;
+use super::session::{Lookout, News, Session};
 use super::stop::Stop;
 use super::task::{Answer, Develop, Developed, Task, Trouble, TroubleKind};
 use super::{Header, names};
@@ -21,90 +22,6 @@ const TRIES: usize = 5;
 const PAUSE: Duration = Duration::from_secs(2);
 /// A damaged file that was changed less than this ago may be one that is still being written.
 const FRESH: Duration = Duration::from_secs(3);
-
-/// What happens to a file.
-#[derive(Debug)]
-pub enum Event<'a> {
-    /// A worker has it now.
-    Begun(&'a Item),
-    /// It is done.
-    Done {
-        /// The file.
-        item: &'a Item,
-        /// As it stands in the journal.
-        done: &'a Done,
-        /// What gave the colours, in words.
-        colours: &'a str,
-        /// A small JPEG as base 64, if asked for.
-        thumbnail: Option<&'a str>,
-    },
-    /// It failed.
-    Failed {
-        /// The file.
-        item: &'a Item,
-        /// One sentence.
-        error: &'a str,
-    },
-    /// It seems to be still growing and is tried again later.
-    Later(&'a Item),
-    /// It was not there any more when its turn came; no failure, while watching.
-    Gone(&'a Item),
-    /// No more files are begun, for this reason.
-    Stopping(&'a str),
-}
-
-/// How a run came out.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Summary {
-    /// Files developed.
-    pub done: usize,
-    /// Files that failed, conflicts among them.
-    pub failed: usize,
-    /// Files that were done before.
-    pub skipped: usize,
-    /// Files that vanished before their turn came, while watching.
-    pub gone: usize,
-    /// Files that are left because the run was stopped.
-    pub left: usize,
-    /// Why it was stopped before the end, if the disk or the output folder was the reason.
-    pub stopped: Option<String>,
-    /// Whether a person or the system wanted it to stop.
-    pub interrupted: bool,
-    /// Pixels developed.
-    pub pixels: u64,
-    /// Seconds of the whole run.
-    pub seconds: f64,
-    /// Most memory that one worker held, bytes; 0 where the system does not tell.
-    pub peak: u64,
-    /// Most memory that was set aside for one worker, bytes.
-    pub estimated: u64,
-}
-
-/// Why a batch cannot run.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum BatchError {
-    /// The journal.
-    #[error(transparent)]
-    Journal(#[from] JournalError),
-    /// The plan.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// Worker processes.
-    #[error("worker processes cannot be started: {0}")]
-    Worker(std::io::Error),
-    /// The output folder.
-    #[error("{path}: the output folder cannot be made: {reason}; choose another `-o`", path = path.display())]
-    Out {
-        /// The folder.
-        path: PathBuf,
-        /// What the system says.
-        reason: std::io::Error,
-    },
-    /// A chart shot that a session was to be coloured by.
-    #[error("{0}")]
-    Chart(String),
-}
 
 /// An output folder with its journal and its workers.
 pub struct Batch {
@@ -199,13 +116,18 @@ impl Batch {
     ) -> Result<Session, BatchError> {
         let folder = self.out.join(journal::FOLDER).join("session");
         let Self { crew, history, journal, .. } = self;
-        let known = history.looked.clone();
-        let mut note = |looked: super::session::Looked| {
-            let record = Record::Looked(looked.clone());
-            history.looked.insert(looked.input.clone(), looked);
-            journal.append(&[record])
+        let known = history.charts.clone();
+        let mut note = |news: News| {
+            let record = match news {
+                News::Looked(looked) => Record::Looked(looked),
+                News::Calibrated(calibrated) => Record::Calibrated(calibrated),
+            };
+            journal.append(std::slice::from_ref(&record))?;
+            history.add(record);
+            Ok(())
         };
-        Session::find(crew, sources, chart, &folder, &known, &mut note, stop, say)
+        let place = &folder;
+        Lookout { crew, chart, place, known: &known, note: &mut note, stop }.find(sources, say)
     }
 
     /// Runs a plan.
@@ -374,7 +296,7 @@ impl<'a> Run<'a> {
             input: item.source.key.clone(),
             output: item.output.clone(),
             source: developed.source,
-            settings: item.hash.clone(),
+            settings: item.settings_hash(&developed.camera),
             camera: developed.camera,
             profile: developed.profile,
             written: developed.written,

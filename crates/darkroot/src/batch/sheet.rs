@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::outcome::{Event, Summary};
 use super::plan::{Item, Plan, State};
-use super::run::{Event, Summary};
 use crate::{Error, VERSION, write_text};
 
 /// How the page looks.

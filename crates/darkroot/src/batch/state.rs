@@ -67,7 +67,7 @@ pub(super) fn state(
         Some(Why::Interrupted)
     } else if done.input != item.source.key || changed(&done.source, &item.source) {
         Some(Why::InputChanged)
-    } else if done.settings != item.hash {
+    } else if done.settings != item.settings_hash(&done.camera) {
         Some(Why::SettingsChanged)
     } else if profiles.now(item, &done.camera).is_none_or(|hash| hash != done.profile) {
         Some(Why::ProfileChanged)

@@ -12,8 +12,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use super::find::{FindError, Search, Source, Sources, find};
+use super::outcome::{BatchError, Event};
 use super::plan::{Item, Plan, PlanError, PlanOptions, Recipes, State, Why};
-use super::run::{Batch, BatchError, Event};
+use super::run::Batch;
 use super::session::{ChartShot, Session};
 use super::settle::Settle;
 use super::stop::Stop;

@@ -47,9 +47,14 @@ fn the_folders_chart_gives_white_balance_and_profile() {
     assert_eq!(desk.read("plain.jpg"), desk.read("out/day 2/still.jpg"));
     assert_ne!(desk.read("out/day 1/still.jpg"), desk.read("out/day 2/still.jpg"));
 
-    // Looked at once: nothing is done again.
+    // Looked at once and calibrated once: nothing is done again.
+    let journal = desk.read("out/.darkroot/journal.jsonl");
     let again = desk.batch(&["--chart-shot", "auto", "--json"]);
     assert_eq!(summary(&again), [0, 4, 0, 0], "{}", again.err);
+    assert_eq!(desk.read("out/.darkroot/journal.jsonl"), journal);
+    // Another light is another profile, and other pictures of its camera.
+    let other = desk.batch(&["--chart-shot", "auto", "--light", "D65", "--json"]);
+    assert_eq!(summary(&other), [2, 2, 0, 0], "{}", other.err);
 }
 
 #[test]
