@@ -89,6 +89,9 @@ impl Batch {
             return Ok(if faults(&plan) == 0 { Outcome::Done } else { Outcome::SomeFailed });
         }
 
+        if sources.files.is_empty() {
+            shown.warn("no raw files were found; `--include PATTERN` takes files that are not named like raw files");
+        }
         batch::check(&sources, &options, &mut recipes)?;
         let mut sheet = Sheet::new(&self.report)?;
         let mut run = Run::open(&options, crew, store)?.with_thumbnails(sheet.wants_thumbnails());

@@ -72,6 +72,27 @@ fn collisions_are_listed_before_anything_runs() {
 }
 
 #[test]
+fn pictures_may_lie_beside_their_raw_files() {
+    let desk = Desk::with_tree();
+    let beside = ["batch", "in", "-o", "in", "--json"];
+    assert_eq!(summary(&desk.run(&beside)), [4, 0, 0, 0]);
+    assert!(desk.path("in/day 1/b.jpg").exists());
+    assert_eq!(summary(&desk.run(&beside)), [0, 4, 0, 0]);
+    // But a picture never replaces a raw file.
+    desk.put("in/x.jpg", small_dng());
+    desk.fails(2, &["batch", "in", "-o", "in", "--include", "x.jpg"], &["x.jpg", "overwritten"]);
+}
+
+#[test]
+fn a_folder_without_raw_files_is_said() {
+    let desk = Desk::new();
+    desk.put("in/notes.txt", "nothing");
+    let run = desk.batch(&["--json"]);
+    assert_eq!((run.code, summary(&run)), (0, [0, 0, 0, 0]), "{}", run.err);
+    assert!(run.err.contains("no raw files"), "{}", run.err);
+}
+
+#[test]
 fn numbers_stay_when_files_come_later() {
     let desk = Desk::with_tree();
     let name = ["--name", "{seq}.{ext}", "--json"];
