@@ -12,7 +12,10 @@ pub mod sharpness;
 pub use sharpness::{EdgeWidth, edge_width};
 
 pub mod unevenness;
-pub use unevenness::{Slope, glare};
+pub use unevenness::Slope;
+
+pub mod glare;
+pub use glare::ChannelLight;
 
 pub mod reference;
 pub use reference::{Reference, ReferenceColour};

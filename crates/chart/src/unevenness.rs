@@ -1,6 +1,5 @@
-//! Uneven light over a chart, and glare in front of it, from the chart's own patches.
+//! Uneven light over a chart, from the chart's own patches.
 
-use colour::Xyz;
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds of reweighting, which keep single patches from bending the plane.
@@ -58,29 +57,6 @@ impl Slope {
     }
 }
 
-/// Stray light over the whole chart, as a share of the light of the white, from its neutral patches: what is left where
-/// the line through measured over expected light meets black. 0 where there are fewer than three neutral patches.
-pub fn glare(measured: &[f64], expected: &[Xyz], neutral: &[bool]) -> f64 {
-    let points: Vec<(f64, f64)> = measured
-        .iter()
-        .zip(expected)
-        .zip(neutral)
-        .filter(|(_, neutral)| **neutral)
-        .map(|((m, e), _)| (e.y, *m))
-        .collect();
-    if points.len() < 3 {
-        return 0.0;
-    }
-    // Relative errors count: dark patches tell of glare, bright ones of the gain.
-    let weight = |y: f64| 1.0 / (0.01 + y).powi(2);
-    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(x, y)| weight(*x) * of(*x, *y)).sum::<f64>();
-    let (n, x, y) = (sum(&|_, _| 1.0), sum(&|x, _| x), sum(&|_, y| y));
-    let (xx, xy) = (sum(&|x, _| x * x), sum(&|x, y| x * y));
-    let gain = (n * xy - x * y) / (n * xx - x * x);
-    let offset = (y - gain * x) / n;
-    if gain > 0.0 && offset.is_finite() { offset / gain } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,13 +74,5 @@ mod tests {
         let found = Slope::of(&places, &measured, &expected).unwrap();
         assert!((found.across - 0.1).abs() < 0.01 && (found.down + 0.05).abs() < 0.01, "{found:?}");
         assert!((slope.range() - (0.3f64.exp() - 1.0)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn glare_is_what_black_has_too_much() {
-        let expected: Vec<Xyz> = [0.9, 0.59, 0.36, 0.2, 0.09, 0.03].map(|y| Xyz::new(y, y, y)).to_vec();
-        let measured: Vec<f64> = expected.iter().map(|e| 0.5 * (e.y + 0.01)).collect();
-        assert!((glare(&measured, &expected, &[true; 6]) - 0.01).abs() < 1e-9);
-        assert!(glare(&measured, &expected, &[false; 6]).abs() < 1e-12);
     }
 }

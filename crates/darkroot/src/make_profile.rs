@@ -7,11 +7,14 @@ use profile::{Kind, Origin, Profile, ProfileCamera};
 
 use crate::calibrate::{Calibrated, Choice, MeasuredPatch, calibrate};
 use crate::light::NamedLight;
-use crate::shot::{Gate, Shot, ShotOptions, Verdict, View, agreement, linearity, open};
+use crate::shot::{Fold, Gate, Shot, ShotOptions, Verdict, View, agreement, light_of, linearity, open};
 use crate::{Error, Settings};
 
 /// Shots nearer than this in light, in stops, are shots at one exposure.
 const ONE_EXPOSURE: f64 = 0.2;
+
+/// Red or blue against green, as a natural logarithm, from which the camera's white is another than the light's.
+const OTHER_WHITE: f64 = 0.15;
 
 /// What a profile is made from.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +47,8 @@ pub struct MadeLight {
     pub light: NamedLight,
     /// The shots under it.
     pub shots: Vec<Shot>,
-    /// What was checked between the shots: `linearity` of an exposure bracket, `agreement` of what is averaged.
+    /// What was checked between the shots: `linearity` of an exposure bracket, `agreement` of what is averaged; and
+    /// whether the `light` is the one that was named.
     pub gates: Vec<Gate>,
     /// The calibration.
     pub calibrated: Calibrated,
@@ -92,11 +96,17 @@ pub fn make_profile(request: &ChartRequest, settings: &Settings) -> Result<MadeP
         let light: NamedLight = (*light).clone();
         let (shots, mut views): (Vec<Shot>, Vec<View>) =
             opened.into_iter().map(|(shot, view, _)| (shot, view)).unzip();
-        let gates = between(&shots, &light, request)?;
+        let mut gates = between(&shots, &light, request)?;
         let patches = averaged(&shots);
-        let choice = Choice { kind: request.kind };
-        let calibrated = calibrate(&light, &patches, &choice)
+        let choice = Choice { kind: request.kind, folds: folds(&shots) };
+        let mut calibrated = calibrate(&light, &patches, &choice)
             .map_err(|e| Error::Fit { light: name.to_owned(), what: e.to_string() })?;
+        if let Some(matrix) = views.first().and_then(|view| view.matrix.as_ref()) {
+            gates.push(light_of(matrix.white_of(calibrated.white_rgb), light.light.xy, name));
+        }
+        if let Some(as_shot) = views.first().and_then(|view| view.as_shot) {
+            calibrated.notes.extend(other_white(as_shot, calibrated.white_rgb));
+        }
         lights.push(MadeLight { light, shots, gates, calibrated, view: views.swap_remove(0) });
     }
     let camera = camera.ok_or(Error::NoLight)?;
@@ -150,6 +160,40 @@ fn averaged(shots: &[Shot]) -> Vec<MeasuredPatch> {
         patch
     };
     (0..first.patches.len()).map(one).collect()
+}
+
+/// What to say where the camera's white balance is not that of the light of the chart.
+fn other_white(as_shot: [f64; 3], white: [f64; 3]) -> Option<String> {
+    let ratio = |c: usize| (as_shot[c] / as_shot[1] * white[1] / white[c]).ln().abs();
+    let gain = |c: usize| white[1] / white[c];
+    (ratio(0).max(ratio(2)) > OTHER_WHITE).then(|| {
+        format!(
+            "the white balance in the file is not that of the chart's light: to see the chart as it is, develop with \
+             `--white-balance {:.3},1,{:.3}`",
+            gain(0),
+            gain(2)
+        )
+    })
+}
+
+/// Shots under one light as one, corrected without the help of some patches.
+fn folds(shots: &[Shot]) -> Vec<Fold> {
+    let count = shots.iter().map(|s| s.folds.len()).min().unwrap_or(0);
+    let fold = |k: usize| {
+        let corrected: Vec<Shot> = shots
+            .iter()
+            .map(|shot| {
+                let mut shot = shot.clone();
+                for (patch, rgb) in shot.patches.iter_mut().zip(&shot.folds[k].rgb) {
+                    patch.rgb = *rgb;
+                }
+                shot
+            })
+            .collect();
+        let rgb = averaged(&corrected).iter().map(|p| p.rgb).collect();
+        Fold { left_out: shots[0].folds[k].left_out.clone(), rgb }
+    };
+    (0..count).map(fold).collect()
 }
 
 /// Light of one set of patches over that of another: the median over patches that both have.

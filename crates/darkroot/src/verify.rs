@@ -327,6 +327,7 @@ mod tests {
                 measurements: Vec::new(),
                 slope: chart::Slope::default(),
                 glare: 0.0,
+                folds: Vec::new(),
                 gates: Vec::new(),
                 notes: Vec::new(),
                 exposure_seconds: None,

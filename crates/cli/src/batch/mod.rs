@@ -90,7 +90,9 @@ impl Batch {
         }
 
         if sources.files.is_empty() {
-            shown.warn("no raw files were found; `--include PATTERN` takes files that are not named like raw files");
+            shown.warn(
+                "no raw files were found; `--include PATTERN` takes files that are not named like raw files",
+            );
         }
         batch::check(&sources, &options, &mut recipes)?;
         let mut sheet = Sheet::new(&self.report)?;

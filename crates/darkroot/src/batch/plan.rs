@@ -186,8 +186,8 @@ pub enum PlanError {
 fn collision_list(collisions: &[Collision]) -> String {
     const SHOWN: usize = 20;
     let mut text = format!(
-        "{} outputs would be written from more than one input; add `--on-collision suffix`, or name them apart with \
-         `--name`:",
+        "several inputs would be written to one output, for {} of them; add `--on-collision suffix`, or name them \
+         apart with `--name`:",
         collisions.len()
     );
     for c in collisions.iter().take(SHOWN) {

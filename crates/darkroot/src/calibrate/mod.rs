@@ -10,9 +10,11 @@ use profile::fit::virtual_set::VirtualSet;
 use profile::fit::{self, FitError, Knowledge, Samples, spectral, white_through};
 use profile::{Calibration, Errors, Figures, Kind, Model, Order};
 
+pub(crate) use patches::is_clipped;
 pub use patches::{Judged, MeasuredPatch};
 
 use crate::light::NamedLight;
+use crate::shot::Fold;
 
 /// Models that are fitted and compared, the simplest first.
 const KINDS: [Kind; 11] = [
@@ -39,6 +41,8 @@ pub const EXPOSURES: [i32; 7] = [-3, -2, -1, 0, 1, 2, 3];
 pub struct Choice {
     /// The model; the best one if not given.
     pub kind: Option<Kind>,
+    /// The patches as corrected without the help of some, where the patches themselves told how to correct them.
+    pub folds: Vec<Fold>,
 }
 
 /// Why a chart gives no calibration.
@@ -121,7 +125,16 @@ pub fn calibrate(
         Samples::new(usable.iter().map(|p| balance(p.rgb)).collect(), raw.xyz().to_vec(), light_white)?;
 
     let spectra: Option<Vec<Spectrum>> = usable.iter().map(|p| p.reference.spectrum()).collect();
-    let compared = compare(&samples, spectra.as_deref(), light);
+    let mut compared = compare(&samples, spectra.as_deref(), light);
+    let places: Vec<usize> = (0..patches.len()).filter(|i| patches[*i].excluded.is_none()).collect();
+    for fold in &choice.folds {
+        see_unseen(&mut compared, fold, &places, &samples)?;
+    }
+    for (compared, fit) in &mut compared {
+        if let (Ok(figures), Some(fit)) = (&mut compared.result, fit) {
+            *figures = fit.figures(&samples);
+        }
+    }
     let kind = choice.kind.or_else(|| best(&compared)).unwrap_or(Kind::Linear);
     let Some((_, fit)) = compared.iter().find(|(c, _)| c.kind == kind) else {
         return Err(FitError::Undetermined { kind }.into());
@@ -222,6 +235,43 @@ fn compare(
         }
     };
     KINDS.into_iter().map(one).collect()
+}
+
+/// Puts what models make of patches that took part neither in the fit nor in the corrections in the place of what was
+/// left out of the fit alone. `places` are those of the samples among all patches.
+///
+/// The models of the prior take too long to be fitted for each fold: there the fit stays as it is and only the patch's
+/// own colour changes, which is most of it.
+fn see_unseen(
+    compared: &mut [(Compared, Option<fit::Fit>)],
+    fold: &Fold,
+    places: &[usize],
+    samples: &Samples,
+) -> Result<(), FitError> {
+    let rgb: Vec<[f64; 3]> = places.iter().map(|i| fold.rgb[*i]).collect();
+    let raw = Samples::new(rgb, samples.xyz().to_vec(), samples.white())?;
+    let white = white_through(&raw)?;
+    let balanced: Vec<[f64; 3]> = raw.rgb().iter().map(|rgb| [0, 1, 2].map(|c| rgb[c] / white[c])).collect();
+    let unseen = Samples::new(balanced, samples.xyz().to_vec(), samples.white())?;
+    let left_out: Vec<usize> = (0..places.len()).filter(|i| fold.left_out.contains(&places[*i])).collect();
+    for (compared, fit) in compared {
+        let Some(fit) = fit else { continue };
+        let again = match compared.kind {
+            Kind::Spectral | Kind::Chromatic => None,
+            kind => Some(fit::fit(&unseen, kind)?.fit.left_out),
+        };
+        for i in &left_out {
+            fit.left_out[*i] = again.as_ref().map_or_else(
+                || {
+                    let (now, then) = (fit.model.xyz(unseen.rgb()[*i]), fit.model.xyz(samples.rgb()[*i]));
+                    let Xyz { x, y, z } = fit.left_out[*i];
+                    Xyz::new(x + now.x - then.x, y + now.y - then.y, z + now.z - then.z)
+                },
+                |left_out| left_out[*i],
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Mean dE2000 of a model on the samples at another exposure, scaled back.

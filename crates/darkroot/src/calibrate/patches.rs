@@ -31,8 +31,13 @@ pub struct MeasuredPatch {
 impl MeasuredPatch {
     /// Whether it has clipped samples.
     pub fn is_clipped(&self) -> bool {
-        self.clipped > CLIPPED
+        is_clipped(self.clipped)
     }
+}
+
+/// Whether a patch with this share of clipped samples counts as clipped.
+pub(crate) fn is_clipped(share: f64) -> bool {
+    share > CLIPPED
 }
 
 /// A patch with what the model makes of it; XYZ relative to D50.

@@ -1,8 +1,10 @@
 //! Whether a shot of a chart is good enough to make a profile of it.
 
 use chart::{EdgeWidth, Layout, Measurement, Quad, Slope};
-use colour::Xyz;
+use colour::temperature::Temperature;
+use colour::{Xy, Xyz};
 
+use super::corrections::ColourChange;
 use super::{ShotOptions, View};
 
 /// How a check came out.
@@ -52,6 +54,10 @@ const EDGES: (f64, f64) = (0.20, 0.40);
 /// as much as good profiles are off.
 const AGREEMENT: (f64, f64) = (0.01, 0.03);
 
+/// Mireds from the named light from which the shot was taken in another: makers' matrices are within 20 of ordinary
+/// lights, D50 and A are 150 apart.
+const OTHER_LIGHT: f64 = 50.0;
+
 /// Checks a measured shot.
 #[expect(clippy::too_many_arguments, reason = "everything that was found about the shot is judged here")]
 pub fn gates(
@@ -59,7 +65,7 @@ pub fn gates(
     measurements: &[Measurement],
     expected: &[Xyz],
     slope: Slope,
-    glare: f64,
+    glare: [f64; 3],
     corners: &Quad,
     layout: &Layout,
     options: &ShotOptions,
@@ -75,17 +81,72 @@ pub fn gates(
         format!("the light changes by {:.1} % over the chart", 100.0 * uneven),
         "light it from both sides or from farther away, give a `--flat`, or add `--even-out`",
     ));
-    gates.push(graded(
-        "glare",
-        glare,
-        if options.correct_glare { (f64::INFINITY, f64::INFINITY) } else { GLARE },
-        format!("stray light is {:.2} % of white", 100.0 * glare),
-        "shade the lens, remove bright surfaces around, or add `--correct-glare`",
-    ));
+    gates.push(stray_light(glare, options.correct_glare));
     gates.push(noise(measurements, expected));
     gates.push(size(corners, layout));
     gates.push(angle(corners));
     gates
+}
+
+fn stray_light(glare: [f64; 3], corrected: bool) -> Gate {
+    let most = glare.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    let lowest = glare.iter().copied().fold(0.0, f64::min);
+    let advice = if lowest < -GLARE.0 / 2.0 {
+        "the file's black level is too high: add `--correct-glare`, which takes that out too, or give a `--dark`"
+    } else {
+        "shade the lens, remove bright surfaces around, or add `--correct-glare`"
+    };
+    graded(
+        "glare",
+        most,
+        if corrected { (f64::INFINITY, f64::INFINITY) } else { GLARE },
+        format!("stray light is {} % of white", by_channel(glare)),
+        advice,
+    )
+}
+
+/// Shares of red, green and blue in percent, in words.
+pub(super) fn by_channel([r, g, b]: [f64; 3]) -> String {
+    format!("{:.2} (red), {:.2} (green), {:.2} (blue)", 100.0 * r, 100.0 * g, 100.0 * b)
+}
+
+/// Whether the light has one colour all over the chart.
+pub(super) fn colour_change(change: ColourChange, evened: bool) -> Gate {
+    let ColourChange { range, gain } = change;
+    let (verdict, words) = if change.is_justified() {
+        let verdict = if evened { Verdict::Good } else { Verdict::Warning };
+        (verdict, format!("the light's colour changes by {:.1} % over the chart", 100.0 * range))
+    } else {
+        let words = format!(
+            "no change of the light's colour over the chart is certain (taking {:.1} % out makes patches left out {:.2} \
+             times as wrong)",
+            100.0 * range,
+            gain
+        );
+        (Verdict::Good, words)
+    };
+    let advice = "light the chart by one kind of lamp, give a `--flat`, or add `--even-out`".to_owned();
+    Gate { name: "colour of light", verdict, value: range, words, advice }
+}
+
+/// Whether the light is the one that was named, by what the camera's own matrices make of its white.
+pub(crate) fn light_of(found: Xy, named: Xy, name: &str) -> Gate {
+    let kelvin = |xy: Xy| Temperature::of(xy).kelvin;
+    let (shot, said) = (kelvin(found), kelvin(named));
+    let apart = (1e6 / shot - 1e6 / said).abs();
+    let near = (shot / 100.0).round() * 100.0;
+    graded(
+        "light",
+        apart,
+        (OTHER_LIGHT, f64::INFINITY),
+        format!(
+            "the white of the shot is that of {near:.0} K by the camera's own matrix, {apart:.0} mired from {name} \
+             ({said:.0} K)"
+        ),
+        &format!(
+            "name the light that the chart stood in (`--light {near:.0}K`, or the lamp), best with a `--reference` of spectra"
+        ),
+    )
 }
 
 fn graded(name: &'static str, value: f64, (good, usable): (f64, f64), words: String, advice: &str) -> Gate {

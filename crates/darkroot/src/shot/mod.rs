@@ -1,24 +1,25 @@
 //! A shot of a chart: where the chart is, what its patches are, whether the shot is good enough.
 
+mod corrections;
 mod gates;
 mod rendered;
 mod view;
 
 use std::path::{Path, PathBuf};
 
-use chart::{Layout, Measurement, Quad, Reference, Slope, edge_width, glare, measure};
+use chart::{Layout, Measurement, Quad, Reference, Slope, edge_width, measure};
 use colour::white;
 
+use corrections::{ColourChange, Corrections, Patches, Sloped, Wanted};
+
+pub use corrections::Fold;
 pub use gates::{Gate, Verdict, gates};
-pub(crate) use gates::{agreement, linearity};
+pub(crate) use gates::{agreement, light_of, linearity};
 pub use view::View;
 
-use crate::calibrate::MeasuredPatch;
+use crate::calibrate::{MeasuredPatch, is_clipped};
 use crate::find_chart::{self, Place};
 use crate::{Error, Settings};
-
-/// Chroma below which a reference patch counts as neutral, and luminance above which it does.
-const NEUTRAL_CHROMA: f64 = 5.0;
 
 /// What a person says about a shot.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,9 +31,10 @@ pub struct ShotOptions {
     pub flat: Option<PathBuf>,
     /// A shot with the lens closed.
     pub dark: Option<PathBuf>,
-    /// Take the slope of light over the chart out, as far as the patches show it.
+    /// Take the slope of light over the chart out, as far as the patches show it: for each channel on its own where the
+    /// light's colour changes and patches that had no say in it bear that out, else one for all.
     pub even_out: bool,
-    /// Take the glare out that the neutral patches show.
+    /// Take the glare out that the patches show, channel by channel: it has the colour of what dazzles.
     pub correct_glare: bool,
     /// Names of patches to leave out.
     pub exclude: Vec<String>,
@@ -61,8 +63,11 @@ pub struct Shot {
     pub measurements: Vec<Measurement>,
     /// Slope of light over the chart.
     pub slope: Slope,
-    /// Stray light as a share of white.
+    /// Stray light in green as a share of white.
     pub glare: f64,
+    /// All patches as corrected without the help of some: what to cross-validate with. Empty where nothing was corrected
+    /// by the patches themselves.
+    pub folds: Vec<Fold>,
     /// What was checked.
     pub gates: Vec<Gate>,
     /// What had to be assumed.
@@ -137,36 +142,39 @@ pub fn open(
 
     let expected: Vec<colour::Xyz> = colours.iter().map(chart::ReferenceColour::xyz_d50).collect();
     let places = chart::windows::places(layout);
-    let luminance = gates::luminances(&rgb, &expected);
+    let by_hand = |i: usize| options.exclude.iter().any(|e| e.eq_ignore_ascii_case(names[i]));
+    let used: Vec<bool> =
+        (0..names.len()).map(|i| !is_clipped(measurements[i].clipped) && !by_hand(i)).collect();
+    let seen = rgb;
+    let told = Patches { rgb: &seen, expected: &expected, places: &places, used: &used };
+    let luminance = gates::luminances(&seen, &expected);
     let targets: Vec<f64> = expected.iter().map(|c| c.y).collect();
     let slope = Slope::of(&places, &luminance, &targets).unwrap_or_default();
-    if options.even_out {
-        for (rgb, place) in rgb.iter_mut().zip(&places) {
-            let light = slope.at(*place);
-            *rgb = rgb.map(|v| v / light);
-        }
-        notes
-            .push(format!("a slope of light of {:.1} % over the chart was taken out", 100.0 * slope.range()));
+    let veil = corrections::glare(told);
+    let change = ColourChange::of(told);
+    let sloped = match (options.even_out, change.is_justified()) {
+        (false, _) => Sloped::Not,
+        (true, true) => Sloped::Each,
+        (true, false) => Sloped::Together,
+    };
+    let wanted = Wanted { glare: options.correct_glare, slope: sloped };
+    let correction = Corrections::of(told, wanted);
+    let rgb = correction.applied(told);
+    let folds = corrections::folds(told, wanted);
+    match sloped {
+        Sloped::Not => {}
+        Sloped::Together => notes.push(format!(
+            "a slope of light of {:.1} % over the chart was taken out",
+            100.0 * correction.slopes[1].range()
+        )),
+        Sloped::Each => notes.push(format!(
+            "a slope of light was taken out for each channel: {} % over the chart; the light's colour changes by {:.1} %",
+            gates::by_channel(correction.slopes.map(Slope::range)),
+            100.0 * change.range
+        )),
     }
-    let neutral: Vec<bool> = expected.iter().map(|c| c.lab(white::D50).chroma() < NEUTRAL_CHROMA).collect();
-    let green: Vec<f64> = rgb.iter().map(|rgb| rgb[1]).collect();
-    let veil = glare(&green, &expected, &neutral);
     if options.correct_glare {
-        for c in 0..3 {
-            let channel: Vec<f64> = rgb.iter().map(|rgb| rgb[c]).collect();
-            let share = glare(&channel, &expected, &neutral);
-            // What white has, by the brightest neutral patch.
-            let bright = (0..rgb.len())
-                .filter(|i| neutral[*i])
-                .max_by(|a, b| expected[*a].y.total_cmp(&expected[*b].y));
-            if let Some(i) = bright {
-                let white = channel[i] / (expected[i].y + share);
-                for rgb in &mut rgb {
-                    rgb[c] -= white * share;
-                }
-            }
-        }
-        notes.push(format!("glare of {:.2} % of white was taken out", 100.0 * veil));
+        notes.push(format!("glare was taken out: {} % of white", gates::by_channel(veil)));
     }
 
     let patches: Vec<MeasuredPatch> = (0..names.len())
@@ -182,7 +190,7 @@ pub fn open(
             };
             if patch.is_clipped() {
                 patch.excluded = Some("clipped".to_owned());
-            } else if options.exclude.iter().any(|e| e.eq_ignore_ascii_case(names[i])) {
+            } else if by_hand(i) {
                 patch.excluded = Some("left out by hand".to_owned());
             } else if rgb[i].iter().any(|v| *v <= 0.0) {
                 patch.excluded = Some("darker than black".to_owned());
@@ -195,6 +203,7 @@ pub fn open(
     }
     let edges = edge_width(&view.frame.light, view.frame.saturation, &framed(&whole), layout.columns);
     let mut checked = gates(&view, &measurements, &expected, slope, veil, &corners, layout, options);
+    checked.push(gates::colour_change(change, options.even_out || options.flat.is_some()));
     checked.push(gates::sharpness(edges));
     if let Some(failed) = checked.iter().find(|g| g.verdict == Verdict::Refused)
         && !options.accept
@@ -210,7 +219,8 @@ pub fn open(
         patches,
         measurements,
         slope,
-        glare: veil,
+        glare: veil[1],
+        folds,
         gates: checked,
         notes,
         exposure_seconds: view.exposure_seconds,

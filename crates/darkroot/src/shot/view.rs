@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use develop::Frame;
+use develop::{CameraMatrix, Frame};
 use photo::metadata::{Directory, tag};
-use photo::{Camera, Layout, Orientation, Rect, Size};
+use photo::{AsShot, Camera, Layout, Orientation, Rect, Size};
 
 use super::rendered;
 use crate::{Error, Settings, files};
@@ -24,6 +24,10 @@ pub struct View {
     orientation: Orientation,
     /// Size of the developed picture.
     pub size: Size,
+    /// The maker's matrices, where the file has them.
+    pub matrix: Option<CameraMatrix>,
+    /// Camera RGB of a neutral surface as the camera took it to be, where the file says so.
+    pub as_shot: Option<[f64; 3]>,
     /// Exposure time, where the camera tells.
     pub exposure_seconds: Option<f64>,
 }
@@ -53,6 +57,11 @@ impl View {
         Ok(Self {
             frame: develop::frame(&capture),
             size: capture.orientation.applied_to(crop.size()),
+            matrix: CameraMatrix::of(&capture),
+            as_shot: match capture.as_shot {
+                Some(AsShot::Neutral(neutral)) => Some(neutral),
+                _ => None,
+            },
             camera: capture.camera,
             crop,
             orientation: capture.orientation,
@@ -82,6 +91,8 @@ impl View {
             crop: Rect::full(size),
             orientation: Orientation::Upright,
             size,
+            matrix: None,
+            as_shot: None,
             exposure_seconds: None,
         })
     }
