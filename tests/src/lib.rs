@@ -4,15 +4,15 @@
 
 use std::path::{Path, PathBuf};
 
-use colour::{Lab, RgbSpace, Spectrum, Vector3, Xyz, white};
-use develop::{Bits, Look, Output, OutputSpace, Recipe};
-use photo::{
+use darkroot_colour::{Lab, RgbSpace, Spectrum, Vector3, Xyz, white};
+use darkroot_develop::{Bits, Look, Output, OutputSpace, Recipe};
+use darkroot_photo::{
     BlackLevel, Capture, Counts, Layout, Mosaic, Picture, PictureSpace, Rect, Samples, Size, WhiteLevel,
 };
-use profile::{Calibration, Kind, Light, Order, Origin, Profile, ProfileCamera, RootPolynomial};
-use simulate::camera::{filters, x_trans};
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene, chart};
+use darkroot_profile::{Calibration, Kind, Light, Order, Origin, Profile, ProfileCamera, RootPolynomial};
+use darkroot_simulate::camera::{filters, x_trans};
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene, chart};
 
 /// The folder of the workspace.
 pub fn root() -> PathBuf {
@@ -120,7 +120,7 @@ pub fn bent_profile(capture: &Capture, order: u8) -> Profile {
             coefficients[i % 3][k] -= b;
         }
     }
-    let light = Light { name: "D55".into(), xy: colour::temperature::daylight_xy(5503.0) };
+    let light = Light { name: "D55".into(), xy: darkroot_colour::temperature::daylight_xy(5503.0) };
     let model = RootPolynomial::new(order, coefficients).unwrap().into();
     let calibration = Calibration::new(light, Kind::plain(order), model);
     let camera = ProfileCamera {
@@ -149,7 +149,7 @@ pub fn output(space: RgbSpace, bits: Bits) -> Output {
 
 /// Plans and renders.
 pub fn develop(capture: &Capture, profile: Option<&Profile>, recipe: &Recipe) -> Picture {
-    develop::plan(capture, profile, recipe).unwrap().render(capture)
+    darkroot_develop::plan(capture, profile, recipe).unwrap().render(capture)
 }
 
 /// Pixels as numbers, 0 = black, 1 = white.

@@ -9,17 +9,17 @@
 
 use std::path::{Path, PathBuf};
 
-use colour::difference::de2000;
-use colour::{RgbSpace, Spectrum, TransferCurve};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{RgbSpace, Spectrum, TransferCurve};
 use darkroot_tests::{lab, output, pixels, root, space_of};
-use develop::{Balance, Bits, Exposure as Brightness, Highlights, Look, Recipe};
+use darkroot_develop::{Balance, Bits, Exposure as Brightness, Highlights, Look, Recipe};
 use image::RgbImage;
-use photo::{Layout, Orientation, Picture, Size};
-use profile::Profile;
+use darkroot_photo::{Layout, Orientation, Picture, Size};
+use darkroot_profile::Profile;
 use serde::Deserialize;
-use simulate::camera::{filters, x_trans};
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene};
+use darkroot_simulate::camera::{filters, x_trans};
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene};
 
 /// Largest difference of a pixel and of the mean of all, dE2000.
 const MOST: f64 = 1.0;
@@ -128,12 +128,12 @@ fn developed(case: &Case, folder: &Path) -> Picture {
         },
         stops: shot.stops,
         orientation: Orientation::from_exif(shot.orientation),
-        ..simulate::samples::exposure(1)
+        ..darkroot_simulate::samples::exposure(1)
     };
     let capture = expose(&Scene::still_life(SIZE), &Camera { layout, ..Camera::simulated_one() }, &exposure);
     let profile: Option<Profile> = case.develop.profile.as_ref().map(|name| {
         let text = std::fs::read_to_string(folder.join(name)).unwrap();
-        profile::file::parse(&text).unwrap_or_else(|e| panic!("{}: {e}", name.display()))
+        darkroot_profile::file::parse(&text).unwrap_or_else(|e| panic!("{}: {e}", name.display()))
     });
     darkroot_tests::develop(&capture, profile.as_ref(), &case.develop.recipe())
 }

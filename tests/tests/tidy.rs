@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use colour::white;
+use darkroot_colour::white;
 use darkroot_tests::root;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -156,7 +156,7 @@ fn profiles() -> Vec<(PathBuf, String)> {
 
 /// What is wrong with a profile, in words.
 fn fault(text: &str) -> Option<String> {
-    let profile = match profile::file::parse(text) {
+    let profile = match darkroot_profile::file::parse(text) {
         Ok(profile) => profile,
         Err(error) => return Some(error.to_string()),
     };
@@ -175,8 +175,8 @@ fn fault(text: &str) -> Option<String> {
 fn every_profile_parses_and_maps_white_to_white() {
     for (path, text) in profiles() {
         assert_eq!(fault(&text), None, "{}", path.display());
-        let profile = profile::file::parse(&text).unwrap();
-        assert_eq!(profile::file::parse(&profile::file::format(&profile)).as_ref(), Ok(&profile));
+        let profile = darkroot_profile::file::parse(&text).unwrap();
+        assert_eq!(darkroot_profile::file::parse(&darkroot_profile::file::format(&profile)).as_ref(), Ok(&profile));
     }
 }
 
@@ -185,7 +185,7 @@ fn a_profile_lies_in_the_folder_of_its_maker_under_the_name_of_its_camera() {
     let plain = |s: &str| s.to_lowercase().replace(|c: char| !c.is_alphanumeric(), "");
     let mut taken = BTreeMap::new();
     for (path, text) in profiles() {
-        let camera = profile::file::parse(&text).unwrap().camera().clone();
+        let camera = darkroot_profile::file::parse(&text).unwrap().camera().clone();
         let folder = path.parent().unwrap().file_name().unwrap().to_string_lossy().into_owned();
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         assert_eq!(plain(&folder), plain(&camera.make), "{}", path.display());
@@ -244,7 +244,7 @@ fn every_sample_stands_in_the_manifest_with_its_hash_and_licence() {
 
 #[test]
 fn every_sample_is_made_again_byte_for_byte() {
-    let made = simulate::samples::all();
+    let made = darkroot_simulate::samples::all();
     let listed = manifest();
     assert_eq!(made.len(), listed.len());
     for (made, listed) in made.iter().zip(&listed) {

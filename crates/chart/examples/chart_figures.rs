@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use chart::{Found, Layout, Options, detect};
+use darkroot_chart::{Found, Layout, Options, detect};
 
 #[path = "../tests/labelled/mod.rs"]
 mod labelled;

@@ -1,6 +1,6 @@
 //! Reference colours built into the program: what makers publish for their charts.
 
-use colour::Lab;
+use darkroot_colour::Lab;
 
 use crate::layout::{TABLES, table};
 

@@ -1,6 +1,6 @@
 //! Glare in front of a chart and uneven light over it, channel by channel, from all of its patches.
 
-use colour::{Xyz, white};
+use darkroot_colour::{Xyz, white};
 use nalgebra::{DMatrix, DVector};
 
 use crate::Slope;

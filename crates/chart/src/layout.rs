@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use colour::Lab;
+use darkroot_colour::Lab;
 use serde::Deserialize;
 use thiserror::Error;
 

@@ -1,7 +1,7 @@
 //! What a camera made of a chart's patches, from the samples of the sensor as they are: nothing is interpolated, so no
 //! patch mixes with its neighbours.
 
-use photo::{Layout, Mosaic};
+use darkroot_photo::{Layout, Mosaic};
 use rayon::prelude::*;
 
 use crate::Quad;
@@ -181,7 +181,7 @@ fn inside(quad: &Quad, x: f64, y: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use photo::{Cfa, Size};
+    use darkroot_photo::{Cfa, Size};
 
     fn frame(value: impl Fn(usize, usize, usize) -> f32) -> Mosaic<f32> {
         let cfa = Cfa::parse("RGGB").unwrap();

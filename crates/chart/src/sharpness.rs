@@ -5,7 +5,7 @@
 //! common spread are not. So gaps that blur has filled tell as much as open ones.
 
 use nalgebra::{Matrix3, Vector3};
-use photo::Mosaic;
+use darkroot_photo::Mosaic;
 use rayon::prelude::*;
 
 use crate::measure::{CLIPPED, for_each_inside};
@@ -200,7 +200,7 @@ fn step(z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use photo::{Cfa, Layout, Size};
+    use darkroot_photo::{Cfa, Layout, Size};
 
     const SIDE: f64 = 30.0;
     const GAP: f64 = 6.0;

@@ -1,6 +1,6 @@
 //! Things with rows and columns that are no charts: none of them may be taken for one.
 
-use chart::{Found, Layout, Options, detect};
+use darkroot_chart::{Found, Layout, Options, detect};
 use rayon::prelude::*;
 
 mod scene;

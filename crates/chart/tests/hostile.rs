@@ -1,6 +1,6 @@
 //! Pictures that are broken, empty or extreme: no panic and no chart.
 
-use chart::{Layout, Options, Picture, detect};
+use darkroot_chart::{Layout, Options, Picture, detect};
 
 mod scene;
 use scene::Random;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chart::{Layout, Options, detect};
+use darkroot_chart::{Layout, Options, detect};
 use rayon::prelude::*;
 
 mod labelled;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up shall fail")]
 
-use chart::{Found, Homography, Layout, Options, Picture, detect};
+use darkroot_chart::{Found, Homography, Layout, Options, Picture, detect};
 use rayon::prelude::*;
 
 mod scene;

@@ -8,7 +8,7 @@ use anyhow::Result;
 use clap::Args;
 use clap::builder::TypedValueParser;
 use darkroot::{Inspection, Key, ProfileStore, Settings, recipe};
-use raw::Decoder;
+use darkroot_raw::Decoder;
 
 use crate::{Outcome, picture};
 

@@ -1,7 +1,7 @@
 //! Values of options that are more than a word from a list and no settings of a picture.
 
 use darkroot::recipe;
-use develop::OutputSpace;
+use darkroot_develop::OutputSpace;
 
 /// `--space`.
 pub(crate) fn space(text: &str) -> Result<OutputSpace, recipe::NotAValue> {
@@ -9,8 +9,8 @@ pub(crate) fn space(text: &str) -> Result<OutputSpace, recipe::NotAValue> {
 }
 
 /// `--model`.
-pub(crate) fn kind(text: &str) -> Result<profile::Kind, String> {
-    text.parse().map_err(|e: profile::kind::UnknownKind| e.to_string())
+pub(crate) fn kind(text: &str) -> Result<darkroot_profile::Kind, String> {
+    text.parse().map_err(|e: darkroot_profile::kind::UnknownKind| e.to_string())
 }
 
 /// `--corners`.

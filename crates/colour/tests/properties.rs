@@ -1,8 +1,8 @@
 //! What holds for every colour, white and spectrum.
 
-use colour::difference::{de_uv, de76, de94, de2000, de2000_sl1};
-use colour::temperature::Temperature;
-use colour::{Cat, Illuminant, Lab, Measured, RgbSpace, Spectrum, TristimulusWeights, Xyz, white};
+use darkroot_colour::difference::{de_uv, de76, de94, de2000, de2000_sl1};
+use darkroot_colour::temperature::Temperature;
+use darkroot_colour::{Cat, Illuminant, Lab, Measured, RgbSpace, Spectrum, TristimulusWeights, Xyz, white};
 use proptest::prelude::*;
 
 fn near(one: Xyz, two: Xyz, tolerance: f64) -> bool {
@@ -22,8 +22,8 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn any_light()(i in 0..colour::illuminant::ILLUMINANTS.len()) -> Illuminant {
-        colour::illuminant::ILLUMINANTS[i]
+    fn any_light()(i in 0..darkroot_colour::illuminant::ILLUMINANTS.len()) -> Illuminant {
+        darkroot_colour::illuminant::ILLUMINANTS[i]
     }
 }
 
@@ -86,20 +86,20 @@ proptest! {
 
     #[test]
     fn weights_do_not_depend_on_the_strength_of_the_light(k in 1e-6..1e6f64, light in any_light()) {
-        let nm = colour::observer::every_ten_nm();
+        let nm = darkroot_colour::observer::every_ten_nm();
         let weights = |k| TristimulusWeights::new(&light.spectrum().scaled(k), &nm).unwrap().white();
         prop_assert!(near(weights(k), weights(1.0), 1e-12));
     }
 
     #[test]
     fn measured_spectra_stay_within_what_was_measured(values in proptest::collection::vec(0.0..1.0f64, 31..=31)) {
-        let measured = Measured::new(&colour::observer::every_ten_nm(), &values).unwrap();
+        let measured = Measured::new(&darkroot_colour::observer::every_ten_nm(), &values).unwrap();
         let low = values.iter().copied().fold(f64::MAX, f64::min) - 1e-12;
         let high = values.iter().copied().fold(0.0, f64::max) + 1e-12;
         for spectrum in [measured.spectrum(), measured.averaged()] {
             prop_assert!(spectrum.0.iter().all(|v| (low..=high).contains(v)));
         }
-        for (nm, value) in colour::observer::every_ten_nm().into_iter().zip(&values) {
+        for (nm, value) in darkroot_colour::observer::every_ten_nm().into_iter().zip(&values) {
             prop_assert!((measured.smooth().unwrap().at(nm) - value).abs() < 1e-9);
         }
     }
@@ -114,7 +114,7 @@ proptest! {
     #[test]
     fn rgb_to_xyz_and_back_is_the_same(r in 0.0..1.0f64, g in 0.0..1.0f64, b in 0.0..1.0f64) {
         for space in [RgbSpace::SRGB, RgbSpace::PROPHOTO, RgbSpace::ACES2065_1, RgbSpace::ACESCG] {
-            let rgb = colour::Vector3::new(r, g, b);
+            let rgb = darkroot_colour::Vector3::new(r, g, b);
             let back = space.from_xyz_under(white::D50) * (space.to_xyz_under(white::D50) * rgb);
             prop_assert!((back - rgb).amax() < 1e-12);
         }

@@ -2,7 +2,7 @@
 //! `use_derived_matrix_RGB_to_XYZ = True`, its `matrix_RGB_to_XYZ`, `cctf_encoding` of 0.001, 0.01, 0.18, 0.5 and
 //! `cctf_decoding` of 0.01, 0.05, 0.18, 0.5.
 
-use colour::{Matrix3, RgbSpace, TransferCurve};
+use darkroot_colour::{Matrix3, RgbSpace, TransferCurve};
 
 #[test]
 fn matrices_are_those_of_colour_science() {

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use darkroot::{Engine, Job, ProfileStore, Settings};
-use photo::Size;
-use simulate::{Camera, Scene, dng, expose, nef, samples};
+use darkroot_photo::Size;
+use darkroot_simulate::{Camera, Scene, dng, expose, nef, samples};
 
 const SIZE: Size = Size { width: 3000, height: 2000 };
 

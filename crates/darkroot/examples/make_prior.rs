@@ -7,10 +7,10 @@
 
 use std::path::{Path, PathBuf};
 
-use colour::Spectrum;
+use darkroot_colour::Spectrum;
 use darkroot::spectra;
-use profile::fit::population::{Population, format_reflectances, smoothed};
-use profile::fit::representatives::clusters;
+use darkroot_profile::fit::population::{Population, format_reflectances, smoothed};
+use darkroot_profile::fit::representatives::clusters;
 
 /// Apache-2.0, from rawtoaces.
 const CAMERAS: [&str; 11] = [

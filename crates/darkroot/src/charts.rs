@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use chart::{Layout, Reference, ReferenceColour};
+use darkroot_chart::{Layout, Reference, ReferenceColour};
 use sha2::{Digest, Sha256};
 
 use crate::Error;
@@ -51,7 +51,7 @@ pub fn layout(text: &str) -> Result<Layout, Error> {
 pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, Error> {
     let fault = |what: String| Err(Error::Chart { path: text.unwrap_or(&layout.name).into(), what });
     let built_in = |name: &str| {
-        let patches = chart::builtin_reference::builtin(name)?;
+        let patches = darkroot_chart::builtin_reference::builtin(name)?;
         let patches = patches.into_iter().map(|(n, lab)| (n, ReferenceColour::Lab(lab))).collect();
         Some(NamedReference { colours: Reference { patches }, name: name.to_owned(), sha256: String::new() })
     };
@@ -66,7 +66,7 @@ pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, 
             Some(found) => Ok(found),
             None => fault(format!(
                 "has no built-in reference; give one with `--reference` (a file, or {})",
-                chart::builtin_reference::names().collect::<Vec<_>>().join(", ")
+                darkroot_chart::builtin_reference::names().collect::<Vec<_>>().join(", ")
             )),
         };
     };

@@ -21,7 +21,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        source: raw::Error,
+        source: darkroot_raw::Error,
     },
     /// The capture cannot be developed as asked.
     #[error("{path}: {source}", path = path.display())]
@@ -29,7 +29,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
         /// What does not fit.
-        source: develop::Error,
+        source: darkroot_develop::Error,
     },
     /// The profile file is unusable.
     #[error("{path}: {source}", path = path.display())]
@@ -37,7 +37,7 @@ pub enum Error {
         /// The profile's file.
         path: PathBuf,
         /// What is wrong with it.
-        source: profile::Error,
+        source: darkroot_profile::Error,
     },
     /// The DCP is unusable as a profile.
     #[error("{path}: {source}", path = path.display())]
@@ -45,7 +45,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        source: profile::export::Error,
+        source: darkroot_profile::export::Error,
     },
     /// A file of spectra is unusable.
     #[error("{path}: {what}", path = path.display())]
@@ -152,7 +152,7 @@ pub enum Error {
         /// The output.
         path: PathBuf,
         /// Why not.
-        source: encode::Error,
+        source: darkroot_encode::Error,
     },
     /// The output is the input.
     #[error("{path}: is the raw file itself and would be overwritten; choose another name", path = path.display())]

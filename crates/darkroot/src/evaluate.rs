@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use colour::{Spectrum, Xyz};
-use profile::fit::{Samples, plain};
-use profile::spectra::in_31_channels;
-use profile::{Errors, Kind, Order, Summary};
+use darkroot_colour::{Spectrum, Xyz};
+use darkroot_profile::fit::{Samples, plain};
+use darkroot_profile::spectra::in_31_channels;
+use darkroot_profile::{Errors, Kind, Order, Summary};
 
 use crate::light::NamedLight;
 use crate::{Error, spectra};

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use colour::Xy;
-use develop::CameraMatrix;
-use profile::Profile;
+use darkroot_colour::Xy;
+use darkroot_develop::CameraMatrix;
+use darkroot_profile::Profile;
 
 use crate::{Error, Settings, files, store};
 
@@ -16,7 +16,7 @@ use crate::{Error, Settings, files, store};
 pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec<[f64; 3]>, Error> {
     let settings = Settings::default();
     let bytes = files::read(raw_file)?;
-    let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
+    let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: raw_file.to_owned(), source })?;
     let unusable = |what: String| Error::Neutral { path: raw_file.to_owned(), what };
     if !store::is_for(profile, &capture.camera) {

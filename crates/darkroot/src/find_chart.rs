@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use chart::{Found, Layout, Options, Picture, Quad, Rejected, Search, measure, windows};
-use colour::RgbSpace;
-use photo::metadata::Metadata;
-use photo::{PictureSpace, Samples, Size};
+use darkroot_chart::{Found, Layout, Options, Picture, Quad, Rejected, Search, measure, windows};
+use darkroot_colour::RgbSpace;
+use darkroot_photo::metadata::Metadata;
+use darkroot_photo::{PictureSpace, Samples, Size};
 
 use crate::shot::View;
 use crate::{Error, Settings, files};
@@ -49,7 +49,7 @@ fn search(view: &View, layouts: &[Layout]) -> Search {
     let bin = view.bin();
     let (size, planes) = view.binned(bin);
     let picture = Picture { width: size.width, height: size.height, planes };
-    let mut search = chart::detect::search(&picture, layouts, &Options::default());
+    let mut search = darkroot_chart::detect::search(&picture, layouts, &Options::default());
     // The middle of a bin of 2 x 2 pixels lies half a pixel beyond its first.
     let scaled = |q: &Quad| q.map(|p| p.map(|v| v * bin as f64 + (bin as f64 - 1.0) / 2.0));
     for found in &mut search.found {
@@ -117,9 +117,9 @@ pub fn preview(
         }
     }
     let picture =
-        photo::Picture { size, samples: Samples::U8(canvas.rgb), space: PictureSpace::Rgb(RgbSpace::SRGB) };
+        darkroot_photo::Picture { size, samples: Samples::U8(canvas.rgb), space: PictureSpace::Rgb(RgbSpace::SRGB) };
     let mut out = std::io::Cursor::new(Vec::new());
-    encode::write(&picture, encode::Format::Png, &encode::Options::default(), &Metadata::default(), &mut out)
+    darkroot_encode::write(&picture, darkroot_encode::Format::Png, &darkroot_encode::Options::default(), &Metadata::default(), &mut out)
         .map_err(|source| Error::Encode { path: output.to_owned(), source })?;
     files::write_whole(output, out.get_ref(), overwrite)
 }

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use colour::adaptation::bradford;
-use colour::{Spectrum, Xyz, white};
-use profile::fit::virtual_set::VirtualSet;
-use profile::fit::{self, Samples, spectral};
-use profile::{
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::{Spectrum, Xyz, white};
+use darkroot_profile::fit::virtual_set::VirtualSet;
+use darkroot_profile::fit::{self, Samples, spectral};
+use darkroot_profile::{
     Calibration, Errors, Figures, Kind, Model, Origin, Patch, Profile, ProfileCamera, Sensitivities,
 };
 
@@ -136,11 +136,11 @@ pub(crate) fn calibration(
     names: &[&str],
 ) -> Calibration {
     let to_d50 = bradford(samples.white(), white::D50);
-    let adapted = |c: Xyz| Xyz::from(to_d50 * colour::Vector3::from(c));
+    let adapted = |c: Xyz| Xyz::from(to_d50 * darkroot_colour::Vector3::from(c));
     let model = model.then(&to_d50).rounded();
     let patch = |(name, (rgb, xyz)): (&&str, (&[f64; 3], &Xyz))| {
         let (xyz, found) = (adapted(*xyz), model.xyz(*rgb));
-        let de2000 = colour::difference::de2000(found.lab(white::D50), xyz.lab(white::D50));
+        let de2000 = darkroot_colour::difference::de2000(found.lab(white::D50), xyz.lab(white::D50));
         Patch { name: (*name).to_owned(), rgb: *rgb, xyz, de2000 }
     };
     let pairs = names.iter().zip(samples.rgb().iter().zip(samples.xyz()));

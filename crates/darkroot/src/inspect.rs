@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use develop::{CameraMatrix, Survey};
-use photo::metadata::{Directory, Metadata, tag};
-use photo::{AsShot, Calibration, Capture, Layout};
+use darkroot_develop::{CameraMatrix, Survey};
+use darkroot_photo::metadata::{Directory, Metadata, tag};
+use darkroot_photo::{AsShot, Calibration, Capture, Layout};
 use serde::Serialize;
 
 use crate::files;
@@ -116,10 +116,10 @@ pub fn inspect(
     samples_hash: bool,
 ) -> Result<Inspection, Error> {
     let bytes = files::read(input)?;
-    let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
+    let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     drop(bytes);
-    let Survey { saturation, clipped, histogram, .. } = develop::survey(&capture);
+    let Survey { saturation, clipped, histogram, .. } = darkroot_develop::survey(&capture);
     let neutral = match capture.as_shot {
         Some(AsShot::Neutral(n)) => Some(n),
         Some(AsShot::White(xy)) => CameraMatrix::of(&capture).and_then(|m| m.neutral_of(xy)),
@@ -127,9 +127,9 @@ pub fn inspect(
     };
     let white = neutral.and_then(|n| {
         let matrix = CameraMatrix::of(&capture)?;
-        Some(colour::temperature::Temperature::of(matrix.white_of(n)))
+        Some(darkroot_colour::temperature::Temperature::of(matrix.white_of(n)))
     });
-    let rect = |r: photo::Rect| [r.x, r.y, r.width, r.height];
+    let rect = |r: darkroot_photo::Rect| [r.x, r.y, r.width, r.height];
     let size = capture.counts.size();
     let (hash, mean) = if samples_hash { hash_and_mean(&capture) } else { (None, None) };
     Ok(Inspection {
@@ -172,24 +172,24 @@ pub fn inspect(
 ///
 /// # Errors
 /// No preview, or input or output cannot be used.
-pub fn save_preview(input: &Path, output: &Path, overwrite: bool) -> Result<raw::Preview, Error> {
+pub fn save_preview(input: &Path, output: &Path, overwrite: bool) -> Result<darkroot_raw::Preview, Error> {
     if crate::naming::same(input, output) {
         return Err(Error::OverInput { path: input.to_owned() });
     }
     let bytes = files::read(input)?;
-    let preview = raw::preview(&bytes).map_err(|source| Error::Raw { path: input.to_owned(), source })?;
+    let preview = darkroot_raw::preview(&bytes).map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     let preview = preview.ok_or_else(|| Error::NoPreview { path: input.to_owned() })?;
     files::write_whole(output, &preview.jpeg, overwrite)?;
     Ok(preview)
 }
 
 fn hash_and_mean(capture: &Capture) -> (Option<String>, Option<f64>) {
-    let hash = format!("{:016x}", raw::samples_hash(&capture.counts));
+    let hash = format!("{:016x}", darkroot_raw::samples_hash(&capture.counts));
     let mean = match &capture.counts {
-        photo::Counts::U16(m) => {
+        darkroot_photo::Counts::U16(m) => {
             m.samples.iter().map(|&v| f64::from(v)).sum::<f64>() / m.samples.len() as f64
         }
-        photo::Counts::F32(m) => {
+        darkroot_photo::Counts::F32(m) => {
             m.samples.iter().map(|&v| f64::from(v)).sum::<f64>() / m.samples.len() as f64
         }
     };
@@ -197,7 +197,7 @@ fn hash_and_mean(capture: &Capture) -> (Option<String>, Option<f64>) {
 }
 
 fn calibration(c: &Calibration) -> CalibrationFacts {
-    let rows = |m: &colour::Matrix3| std::array::from_fn(|i| m[(i / 3, i % 3)]);
+    let rows = |m: &darkroot_colour::Matrix3| std::array::from_fn(|i| m[(i / 3, i % 3)]);
     CalibrationFacts {
         kelvin: c.kelvin,
         color_matrix: rows(&c.color_matrix),

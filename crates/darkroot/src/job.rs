@@ -4,11 +4,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use develop::{Colours, OutputSpace, Recipe};
-use encode::Format;
-use photo::metadata::{Directory, Metadata, Value, tag};
-use photo::{Capture, Picture, PictureSpace};
-use profile::Profile;
+use darkroot_develop::{Colours, OutputSpace, Recipe};
+use darkroot_encode::Format;
+use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
+use darkroot_photo::{Capture, Picture, PictureSpace};
+use darkroot_profile::Profile;
 use serde::Serialize;
 
 use crate::files::{self, Failed};
@@ -109,7 +109,7 @@ pub(crate) fn develop_bytes(
     settings: &Settings,
     store: &ProfileStore,
     step: &dyn Fn(Step),
-    seen: &mut dyn FnMut(&photo::Camera, &Picture),
+    seen: &mut dyn FnMut(&darkroot_photo::Camera, &Picture),
 ) -> Result<Report, Error> {
     let start = Instant::now();
     let (input, output) = (&job.input, &job.output);
@@ -131,13 +131,13 @@ pub(crate) fn develop_bytes(
 
     step(Step::Write);
     let write = |out: &mut io::BufWriter<&std::fs::File>| {
-        encode::write(&picture, format, &settings.encode, &metadata, out)
+        darkroot_encode::write(&picture, format, &settings.encode, &metadata, out)
     };
     let folder = settings.scratch.as_deref();
     files::write(output, folder, settings.overwrite, write).map_err(|failed| match failed {
         Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
         Failed::Io(e) => Error::write(output, &e),
-        Failed::Other(encode::Error::Io(e)) => Error::write(output, &e),
+        Failed::Other(darkroot_encode::Error::Io(e)) => Error::write(output, &e),
         Failed::Other(source) => Error::Encode { path: output.clone(), source },
     })?;
 
@@ -161,7 +161,7 @@ fn format_of(output: &Path, settings: &Settings) -> Format {
 }
 
 fn decode(input: &Path, bytes: Vec<u8>, settings: &Settings) -> Result<Capture, Error> {
-    raw::decode(&bytes, settings.decoder, &settings.limits)
+    darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.to_owned(), source })
 }
 
@@ -174,7 +174,7 @@ fn own_engine(
 ) -> Result<(Picture, Report), Error> {
     let chosen = choose_profile(input, capture, settings, store)?;
     let (profile, place) = chosen.map_or((None, None), |(p, place)| (Some(p), Some(place)));
-    let plan = develop::plan(capture, profile.as_ref(), recipe)
+    let plan = darkroot_develop::plan(capture, profile.as_ref(), recipe)
         .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
     let picture = plan.render(capture);
     let camera_output = recipe.output.space == OutputSpace::Camera;
@@ -280,7 +280,7 @@ fn metadata_for(capture: &Capture, picture: &Picture) -> Metadata {
     const UNCALIBRATED: u16 = 65535;
     let mut metadata = capture.metadata.clone();
     metadata.set(Directory::Image, tag::SOFTWARE, Value::Text(format!("Darkroot {VERSION}")));
-    let srgb = picture.space == PictureSpace::Rgb(colour::RgbSpace::SRGB);
+    let srgb = picture.space == PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
     let space = if srgb { SRGB } else { UNCALIBRATED };
     metadata.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));
     metadata

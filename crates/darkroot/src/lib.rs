@@ -77,7 +77,7 @@ pub use files::{abandon, write_text};
 #[cfg(feature = "imagepipe")]
 mod pipe;
 
-pub use encode::{ChromaSubsampling, Format, Options as EncodeOptions};
+pub use darkroot_encode::{ChromaSubsampling, Format, Options as EncodeOptions};
 
 /// Version of Darkroot, as outputs carry it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

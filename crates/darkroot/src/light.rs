@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use colour::illuminant::{ILLUMINANTS, Illuminant};
-use colour::temperature::planckian_xy;
-use colour::{Spectrum, Xy};
-use profile::Light;
+use darkroot_colour::illuminant::{ILLUMINANTS, Illuminant};
+use darkroot_colour::temperature::planckian_xy;
+use darkroot_colour::{Spectrum, Xy};
+use darkroot_profile::Light;
 
 use crate::{Error, spectra};
 

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use chart::{Layout, Reference};
-use profile::{Kind, Origin, Profile, ProfileCamera};
+use darkroot_chart::{Layout, Reference};
+use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
 
 use crate::calibrate::{Calibrated, Choice, MeasuredPatch, calibrate};
 use crate::light::NamedLight;
@@ -77,7 +77,7 @@ pub fn make_profile(request: &ChartRequest, settings: &Settings) -> Result<MadeP
             names.push(&light.light.name);
         }
     }
-    let mut camera: Option<photo::Camera> = None;
+    let mut camera: Option<darkroot_photo::Camera> = None;
     for name in names {
         let mut opened = Vec::new();
         for (path, light) in request.shots.iter().filter(|(_, l)| l.light.name == name) {

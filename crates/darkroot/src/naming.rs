@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use encode::Format;
-use photo::metadata::{Directory, tag};
+use darkroot_encode::Format;
+use darkroot_photo::metadata::{Directory, tag};
 
 /// One input and its output.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -212,11 +212,11 @@ fn fill(
 /// Camera and date (2026-05-01) as they can stand in a file name.
 fn header(input: &Path) -> Option<(String, String)> {
     let bytes = crate::files::read(input).ok()?;
-    raw::header(&bytes, &raw::Limits::default()).ok().map(|capture| header_of(&capture))
+    darkroot_raw::header(&bytes, &darkroot_raw::Limits::default()).ok().map(|capture| header_of(&capture))
 }
 
 /// Camera and date of a capture as they can stand in a file name.
-pub(crate) fn header_of(capture: &photo::Capture) -> (String, String) {
+pub(crate) fn header_of(capture: &darkroot_photo::Capture) -> (String, String) {
     let clean = |s: String| s.replace(|c: char| !c.is_alphanumeric() && c != '-' && c != '.', "_");
     let date = capture.metadata.text(Directory::Exif, tag::DATE_TIME_ORIGINAL).and_then(|d| d.get(..10));
     let date = date.map_or_else(|| "undated".to_owned(), |d| d.replace(':', "-"));

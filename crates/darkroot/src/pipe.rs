@@ -1,8 +1,8 @@
 //! The second engine: imagepipe, fed with our own decode, for comparison.
 
-use develop::Bits;
+use darkroot_develop::Bits;
 use imagepipe::{ImageSource, Pipeline};
-use photo::{Capture, Counts, Layout, Orientation, Picture, PictureSpace, Samples, Size};
+use darkroot_photo::{Capture, Counts, Layout, Orientation, Picture, PictureSpace, Samples, Size};
 use rawloader::{CFA, RawImage, RawImageData};
 
 /// Develops a capture with imagepipe's default pipeline, into sRGB.
@@ -12,7 +12,7 @@ pub(crate) fn develop(capture: &Capture, bits: Bits) -> Result<Picture, String> 
     let image = raw_image(capture)?;
     let run = || -> Result<Picture, String> {
         let mut pipeline = Pipeline::new_from_source(ImageSource::Raw(image))?;
-        let space = PictureSpace::Rgb(colour::RgbSpace::SRGB);
+        let space = PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
         let picture = if bits == Bits::Eight {
             let out = pipeline.output_8bit(None)?;
             let size = Size { width: out.width, height: out.height };
@@ -40,13 +40,13 @@ fn raw_image(capture: &Capture) -> Result<RawImage, String> {
     };
     let (size, crop) = (mosaic.size, capture.default_crop);
     let neutral = match capture.as_shot {
-        Some(photo::AsShot::Neutral(n)) if !capture.balance_applied => n,
+        Some(darkroot_photo::AsShot::Neutral(n)) if !capture.balance_applied => n,
         _ => [1.0; 3],
     };
     let green = |values: [f32; 3]| [values[0], values[1], values[2], values[1]];
     let level = |v: f32| v.clamp(0.0, 65535.0).round() as u16;
     let matrix = capture.calibrations.last().map(|c| c.color_matrix);
-    let matrix = matrix.unwrap_or_else(colour::Matrix3::identity);
+    let matrix = matrix.unwrap_or_else(darkroot_colour::Matrix3::identity);
     let mut xyz_to_cam = [[0f32; 3]; 4];
     for (r, row) in xyz_to_cam.iter_mut().take(3).enumerate() {
         *row = [0, 1, 2].map(|c| matrix[(r, c)] as f32);

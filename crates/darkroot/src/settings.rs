@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use develop::{Bits, Look, OutputSpace, Recipe};
-use encode::Format;
-use photo::PictureSpace;
-use raw::{Decoder, Limits};
+use darkroot_develop::{Bits, Look, OutputSpace, Recipe};
+use darkroot_encode::Format;
+use darkroot_photo::PictureSpace;
+use darkroot_raw::{Decoder, Limits};
 
 /// Which profile gives the colours.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -43,7 +43,7 @@ pub struct Settings {
     /// Format of the outputs, where the person named one; else their ending says.
     pub format: Option<Format>,
     /// How files are written.
-    pub encode: encode::Options,
+    pub encode: darkroot_encode::Options,
     /// Which profile.
     pub profile: ProfileChoice,
     /// Which engine.
@@ -120,7 +120,7 @@ impl Settings {
     pub fn resolve(&self, format: Format) -> Result<Recipe, SettingsError> {
         let mut recipe = self.recipe;
         let linear = recipe.look == Look::Linear;
-        let srgb = colour::RgbSpace::SRGB;
+        let srgb = darkroot_colour::RgbSpace::SRGB;
         recipe.output.space = self.space.unwrap_or(OutputSpace::Rgb(match format {
             Format::Exr => srgb.linear(),
             _ if linear => srgb.linear(),
@@ -150,7 +150,7 @@ impl Settings {
         }
         let space = match recipe.output.space {
             OutputSpace::Rgb(space) => {
-                if linear && space.curve != colour::TransferCurve::Linear {
+                if linear && space.curve != darkroot_colour::TransferCurve::Linear {
                     return Err(SettingsError::CurveOnLinear { space: crate::settings::space_name(&space) });
                 }
                 PictureSpace::Rgb(space)
@@ -171,7 +171,7 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
     if settings.profile != ProfileChoice::Automatic {
         return refuse("`--profile`");
     }
-    if recipe.output.space != OutputSpace::Rgb(colour::RgbSpace::SRGB) {
+    if recipe.output.space != OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB) {
         return refuse("`--space`");
     }
     if recipe.output.bits == Bits::Float {
@@ -184,13 +184,13 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
 }
 
 /// The spaces that a person can name, without the `-linear` ending.
-pub const SPACES: [(&str, colour::RgbSpace); 6] = [
-    ("srgb", colour::RgbSpace::SRGB),
-    ("display-p3", colour::RgbSpace::DISPLAY_P3),
-    ("adobe-rgb", colour::RgbSpace::ADOBE_RGB),
-    ("prophoto", colour::RgbSpace::PROPHOTO),
-    ("rec2020", colour::RgbSpace::REC2020),
-    ("ecirgb-v2", colour::RgbSpace::ECIRGB_V2),
+pub const SPACES: [(&str, darkroot_colour::RgbSpace); 6] = [
+    ("srgb", darkroot_colour::RgbSpace::SRGB),
+    ("display-p3", darkroot_colour::RgbSpace::DISPLAY_P3),
+    ("adobe-rgb", darkroot_colour::RgbSpace::ADOBE_RGB),
+    ("prophoto", darkroot_colour::RgbSpace::PROPHOTO),
+    ("rec2020", darkroot_colour::RgbSpace::REC2020),
+    ("ecirgb-v2", darkroot_colour::RgbSpace::ECIRGB_V2),
 ];
 
 /// The space of a name: one of [`SPACES`], each also with `-linear`, `aces2065-1` or `camera`.
@@ -199,14 +199,14 @@ pub fn space(name: &str) -> Option<OutputSpace> {
         return Some(OutputSpace::Camera);
     }
     if name == "aces2065-1" {
-        return Some(OutputSpace::Rgb(colour::RgbSpace::ACES2065_1));
+        return Some(OutputSpace::Rgb(darkroot_colour::RgbSpace::ACES2065_1));
     }
     let (base, linear) = name.strip_suffix("-linear").map_or((name, false), |base| (base, true));
     let (_, space) = SPACES.iter().find(|(n, _)| *n == base)?;
     Some(OutputSpace::Rgb(if linear { space.linear() } else { *space }))
 }
 
-fn space_name(space: &colour::RgbSpace) -> String {
+fn space_name(space: &darkroot_colour::RgbSpace) -> String {
     SPACES.iter().find(|(_, s)| s.primaries == space.primaries).map_or(space.name, |(n, _)| n).to_owned()
 }
 
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn the_linear_look_is_linear_srgb_in_16_bits_unless_told_otherwise() {
         let recipe = settings(Look::Linear, None, None).resolve(Format::Tiff).unwrap();
-        assert_eq!(recipe.output.space, OutputSpace::Rgb(colour::RgbSpace::SRGB.linear()));
+        assert_eq!(recipe.output.space, OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB.linear()));
         assert_eq!(recipe.output.bits, Bits::Sixteen);
     }
 

@@ -5,11 +5,11 @@
 
 use std::path::Path;
 
-use colour::Spectrum;
-use colour::measured::Measured;
+use darkroot_colour::Spectrum;
+use darkroot_colour::measured::Measured;
 use sha2::{Digest, Sha256};
 
-use profile::Sensitivities;
+use darkroot_profile::Sensitivities;
 
 use crate::Error;
 

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use photo::Camera;
-use profile::export::dcp;
-use profile::{Profile, ProfileCamera};
+use darkroot_photo::Camera;
+use darkroot_profile::export::dcp;
+use darkroot_profile::{Profile, ProfileCamera};
 
 use crate::Error;
 
@@ -116,7 +116,7 @@ impl ProfileStore {
 
     fn with_builtin(mut self) -> Self {
         for (name, text) in BUILTIN {
-            match profile::file::parse(text) {
+            match darkroot_profile::file::parse(text) {
                 Ok(profile) => self.entries.push(Entry::of(profile, "built in".to_owned())),
                 Err(fault) => self.faults.push(format!("built-in profile {name}: {fault}")),
             }
@@ -145,10 +145,10 @@ pub fn read(path: &Path) -> Result<Profile, Error> {
         return imported.map(|i| i.profile).map_err(|source| Error::Dcp { path: path.to_owned(), source });
     }
     let text = String::from_utf8(bytes).map_err(|_| {
-        let source = profile::Error::Syntax { detail: "it is no text".to_owned() };
+        let source = darkroot_profile::Error::Syntax { detail: "it is no text".to_owned() };
         Error::Profile { path: path.to_owned(), source }
     })?;
-    profile::file::parse(&text).map_err(|source| Error::Profile { path: path.to_owned(), source })
+    darkroot_profile::file::parse(&text).map_err(|source| Error::Profile { path: path.to_owned(), source })
 }
 
 /// Writes a profile's file, whole or not at all. Missing folders are made.
@@ -156,7 +156,7 @@ pub fn read(path: &Path) -> Result<Profile, Error> {
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
 pub fn write(profile: &Profile, path: &Path, overwrite: bool) -> Result<(), Error> {
-    crate::files::write_whole(path, profile::file::format(profile).as_bytes(), overwrite)
+    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), overwrite)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {

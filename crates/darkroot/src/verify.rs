@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use colour::difference::{de2000, de2000_sl1};
-use colour::white;
-use profile::{Errors, Profile, Summary};
+use darkroot_colour::difference::{de2000, de2000_sl1};
+use darkroot_colour::white;
+use darkroot_profile::{Errors, Profile, Summary};
 
 use crate::calibrate::{Judged, judge};
 use crate::make_profile::ChartRequest;
@@ -103,7 +103,7 @@ pub fn verify(profile: &Profile, request: &ChartRequest, settings: &Settings) ->
     let sl1 = Summary::of(&pairs.iter().map(|(a, b)| de2000_sl1(*a, *b)).collect::<Vec<_>>());
     let below = pairs.iter().filter(|(a, b)| de2000(*a, *b) < 4.0).count();
     let nearest = profile.calibrations().iter().min_by(|a, b| {
-        let off = |c: &profile::Calibration| (1e6 / c.light.kelvin() - 1e6 / light.light.kelvin()).abs();
+        let off = |c: &darkroot_profile::Calibration| (1e6 / c.light.kelvin() - 1e6 / light.light.kelvin()).abs();
         off(a).total_cmp(&off(b))
     });
     let promised = nearest.and_then(|c| c.figures.leave_one_out.or(c.figures.held_out)).map(|e| e.de2000);
@@ -314,7 +314,7 @@ mod tests {
         let shot = |mean: f64| Verification {
             shot: Shot {
                 path: "a".into(),
-                camera: photo::Camera {
+                camera: darkroot_photo::Camera {
                     make: String::new(),
                     model: String::new(),
                     common_make: String::new(),
@@ -325,7 +325,7 @@ mod tests {
                 confidence: 1.0,
                 patches: Vec::new(),
                 measurements: Vec::new(),
-                slope: chart::Slope::default(),
+                slope: darkroot_chart::Slope::default(),
                 glare: 0.0,
                 folds: Vec::new(),
                 gates: Vec::new(),

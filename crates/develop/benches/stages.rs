@@ -6,20 +6,20 @@
 
 use std::hint::black_box;
 
-use colour::{RgbSpace, TransferCurve};
+use darkroot_colour::{RgbSpace, TransferCurve};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use develop::demosaic::Method;
-use develop::gamut::Primaries;
-use develop::highlights::Treatment;
-use develop::level::Levels;
-use develop::tone::Curve;
-use develop::transfer::Encoder;
-use develop::{Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer};
-use photo::{
+use darkroot_develop::demosaic::Method;
+use darkroot_develop::gamut::Primaries;
+use darkroot_develop::highlights::Treatment;
+use darkroot_develop::level::Levels;
+use darkroot_develop::tone::Curve;
+use darkroot_develop::transfer::Encoder;
+use darkroot_develop::{Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer};
+use darkroot_photo::{
     BlackLevel, Camera, CameraSpace, Capture, Cfa, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Rgb,
     Size, Source, WhiteLevel,
 };
-use profile::{Order, PlaneModel, RootPolynomial};
+use darkroot_profile::{Order, PlaneModel, RootPolynomial};
 
 const SIZE: Size = Size { width: 1024, height: 512 };
 const BORDER: usize = 16;

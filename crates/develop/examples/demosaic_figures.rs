@@ -15,10 +15,10 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use colour::TransferCurve::{self, Linear, Srgb};
-use develop::demosaic::{Method, demosaic};
+use darkroot_colour::TransferCurve::{self, Linear, Srgb};
+use darkroot_develop::demosaic::{Method, demosaic};
 use image::RgbImage;
-use photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb, Size};
+use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb, Size};
 
 const BAYER: &str = "RGGB";
 const X_TRANS: &str = "GBGGRG RGRBGB GBGGRG GRGGBG BGBRGR GRGGBG";

@@ -1,6 +1,6 @@
 //! White balance: multipliers that make the white of the light (1,1,1).
 
-use photo::Layout;
+use darkroot_photo::Layout;
 
 /// Multiplies a run of samples of row `y` by the multipliers of their filters; the first sample is that of
 /// column `x` (all samples of a pixel are there).

@@ -1,7 +1,7 @@
 //! Colour correction: the camera's profile takes balanced camera RGB to scene-linear Rec. 2020.
 
-use photo::{CameraSpace, Rgb, Scene};
-use profile::PlaneModel;
+use darkroot_photo::{CameraSpace, Rgb, Scene};
+use darkroot_profile::PlaneModel;
 
 /// Applies a model whose output is linear Rec. 2020.
 pub fn correct(mut picture: Rgb<CameraSpace>, model: &PlaneModel) -> Rgb<Scene> {

@@ -3,8 +3,8 @@
 //! All of them look at one sample and its place only, so they run row by row. Warps, which move pixels, are not
 //! applied; the capture's notes say so.
 
-use photo::correction::{Area, GainMap, Vignette};
-use photo::{CameraSpace, Correction, Rect, Rgb, Size};
+use darkroot_photo::correction::{Area, GainMap, Vignette};
+use darkroot_photo::{CameraSpace, Correction, Rect, Rgb, Size};
 
 /// Where a run of samples lies.
 #[derive(Debug, Clone, Copy)]

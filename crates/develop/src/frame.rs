@@ -1,6 +1,6 @@
 //! The linear light of a whole frame, for measuring: samples as the sensor has them, before anything is interpolated.
 
-use photo::{Capture, Counts, Layout, Mosaic, Rect};
+use darkroot_photo::{Capture, Counts, Layout, Mosaic, Rect};
 use rayon::prelude::*;
 
 use crate::corrections::{self, Run, is_supported};

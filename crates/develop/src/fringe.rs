@@ -8,11 +8,11 @@
 
 use std::array::from_fn;
 
-use photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
+use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 
 use crate::demosaic::{signed_sqrt, signed_square};
 use crate::highlights::{CLIPPED, Treatment};
-use profile::simd::vectorised;
+use darkroot_profile::simd::vectorised;
 
 /// Pixels around the result that are looked at.
 pub const BORDER: usize = 5;
@@ -152,7 +152,7 @@ fn around(mosaic: &Mosaic<f32>, kinds: &[u8], centre: usize) -> Option<([f32; 3]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use photo::Size;
+    use darkroot_photo::Size;
 
     const SIZE: Size = Size { width: 30, height: 30 };
     const TREATMENT: Treatment = Treatment::Rebuild { limits: [2.0, 1.0, 1.5], offsets: [0.0; 3] };

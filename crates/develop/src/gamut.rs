@@ -1,8 +1,8 @@
 //! Gamut: from Rec. 2020 to the primaries of the output.
 
-use colour::{Matrix3, RgbSpace, white};
-use photo::{Display, Rgb, Scene, Toned};
-use profile::simd::vectorised;
+use darkroot_colour::{Matrix3, RgbSpace, white};
+use darkroot_photo::{Display, Rgb, Scene, Toned};
+use darkroot_profile::simd::vectorised;
 
 /// Linear Rec. 2020 to the linear RGB of another space, white to white.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,7 @@ pub fn convert(mut picture: Rgb<Scene>, primaries: &Primaries) -> Rgb<Display> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use photo::Size;
+    use darkroot_photo::Size;
 
     fn one<S>(v: [f32; 3]) -> Rgb<S> {
         Rgb::from_planes(Size { width: 1, height: 1 }, v.map(|v| vec![v])).unwrap()

@@ -9,8 +9,8 @@
 
 use std::array::from_fn;
 
-use photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
-use profile::simd::vectorised;
+use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
+use darkroot_profile::simd::vectorised;
 
 /// Pixels around a sample that rebuilding looks at.
 pub const BORDER: usize = 2;
@@ -136,7 +136,7 @@ pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use photo::Size;
+    use darkroot_photo::Size;
 
     const LIMITS: [f32; 3] = [2.0, 1.0, 1.5];
     const TREATMENT: Treatment = Treatment::Rebuild { limits: LIMITS, offsets: [0.0; 3] };

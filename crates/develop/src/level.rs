@@ -1,6 +1,6 @@
 //! Black level and white level: from counts to linear light, 0 = black, 1 = saturated.
 
-use photo::{Capture, Layout};
+use darkroot_photo::{Capture, Layout};
 
 /// Offsets and scales of every sample of a frame, prepared once.
 #[derive(Debug, Clone)]

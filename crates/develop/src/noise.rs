@@ -3,7 +3,7 @@
 //! The variance is that of the square roots of balanced samples, the domain of demosaicing. Shot noise is even
 //! there (Anscombe, Biometrika 35, 1948); read noise lets it rise in the shadows.
 
-use photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic};
+use darkroot_photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic};
 use rayon::prelude::*;
 
 use crate::corrections::{self, Run};
@@ -49,7 +49,7 @@ impl Noise {
     pub(crate) fn measure(
         capture: &Capture,
         levels: &Levels,
-        corrections: &[photo::Correction],
+        corrections: &[darkroot_photo::Correction],
         multipliers: [f32; 3],
     ) -> Self {
         let windows = match &capture.counts {
@@ -119,7 +119,7 @@ fn windows<T: Copy + Into<f32> + Sync>(
     capture: &Capture,
     counts: &Mosaic<T>,
     levels: &Levels,
-    corrections: &[photo::Correction],
+    corrections: &[darkroot_photo::Correction],
     multipliers: [f32; 3],
 ) -> Vec<Window> {
     let Layout::Cfa(cfa) = &counts.layout else { return Vec::new() };

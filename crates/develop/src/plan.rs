@@ -1,9 +1,9 @@
 //! What the loops use: everything computed once for one capture, one profile and one recipe.
 
-use colour::temperature::{Temperature, daylight_xy};
-use colour::{RgbSpace, TransferCurve, Xy, white};
-use photo::{AsShot, Capture, Correction, Layout, Orientation, Rect, Size};
-use profile::{Model, PlaneModel, Profile};
+use darkroot_colour::temperature::{Temperature, daylight_xy};
+use darkroot_colour::{RgbSpace, TransferCurve, Xy, white};
+use darkroot_photo::{AsShot, Capture, Correction, Layout, Orientation, Rect, Size};
+use darkroot_profile::{Model, PlaneModel, Profile};
 
 use crate::corrections::is_supported;
 use crate::demosaic::Method;

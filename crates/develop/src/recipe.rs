@@ -1,6 +1,6 @@
 //! What a person asks for: the settings of each stage, all with defaults.
 
-use colour::RgbSpace;
+use darkroot_colour::RgbSpace;
 
 /// How a photograph shall be developed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

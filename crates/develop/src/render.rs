@@ -1,6 +1,6 @@
 //! Runs the stages over tiles, in parallel, and puts the finished tiles upright into one picture.
 
-use photo::{Capture, Encoded, Picture, PictureSpace, Rect, Rgb, Samples, Scene, Size};
+use darkroot_photo::{Capture, Encoded, Picture, PictureSpace, Rect, Rgb, Samples, Scene, Size};
 use rayon::prelude::*;
 
 use crate::plan::{Plan, border};
@@ -117,7 +117,7 @@ impl Plan {
         self.encode(display)
     }
 
-    fn encode(&self, display: Rgb<photo::Display>) -> Rgb<Encoded> {
+    fn encode(&self, display: Rgb<darkroot_photo::Display>) -> Rgb<Encoded> {
         match self.bits {
             Bits::Float => transfer::encode_unbounded(display, &self.encoder),
             Bits::Eight | Bits::Sixteen => transfer::encode(display, &self.encoder),
@@ -140,7 +140,7 @@ impl Plan {
             let line = y * rect.width;
             let (u0, v0) = self.orientation.place(rect.x - crop.x, rect.y - crop.y + y, crop.size());
             let at = ((v0 - upright.y) * size.width + u0) * 3;
-            if self.orientation == photo::Orientation::Upright {
+            if self.orientation == darkroot_photo::Orientation::Upright {
                 let pixels = band[at..at + 3 * rect.width].chunks_exact_mut(3);
                 let planes = r[line..].iter().zip(&g[line..]).zip(&b[line..]);
                 for (pixel, ((r, g), b)) in pixels.zip(planes) {

@@ -4,7 +4,7 @@
 //! pile up at this ISO. Taken at its word, it leaves clipped highlights unseen and pink. So the picture is asked:
 //! where its brightest samples stand in one heap, there the channel clips.
 
-use photo::{Capture, Counts, Layout, Mosaic};
+use darkroot_photo::{Capture, Counts, Layout, Mosaic};
 use rayon::prelude::*;
 
 use crate::level::Levels;

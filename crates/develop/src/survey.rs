@@ -1,6 +1,6 @@
 //! One look at the whole frame: mean light of small blocks, what is clipped, how the light is spread.
 
-use photo::{Capture, Counts, Layout, Mosaic, Rect};
+use darkroot_photo::{Capture, Counts, Layout, Mosaic, Rect};
 use rayon::prelude::*;
 
 use crate::corrections::{self, Run, is_supported};
@@ -118,7 +118,7 @@ fn strip<T: Copy + Into<f32>>(
     capture: &Capture,
     counts: &Mosaic<T>,
     levels: &Levels,
-    supported: &[photo::Correction],
+    supported: &[darkroot_photo::Correction],
     saturation: [f32; 3],
     place: Rect,
 ) -> Strip {

@@ -3,8 +3,8 @@
 //! Beyond the active area the border continues the mosaic: mirrored for Bayer (which keeps the phase of its
 //! 2x2 block), shifted by whole periods for larger arrays.
 
-use photo::{Capture, Cfa, Counts, Layout, Mosaic, Rect, Size};
-use profile::simd::vectorised;
+use darkroot_photo::{Capture, Cfa, Counts, Layout, Mosaic, Rect, Size};
+use darkroot_profile::simd::vectorised;
 
 use crate::corrections::{self, Run};
 use crate::level::Levels;

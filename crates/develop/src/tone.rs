@@ -6,8 +6,8 @@
 //! of R, G and B, and the middle one keeps its relative place between them: hue in the sense of HSV stays, and
 //! bright colours run to white.
 
-use photo::{Rgb, Scene, Toned};
-use profile::simd::vectorised;
+use darkroot_photo::{Rgb, Scene, Toned};
+use darkroot_profile::simd::vectorised;
 
 use crate::Look;
 
@@ -89,7 +89,7 @@ pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use photo::Size;
+    use darkroot_photo::Size;
 
     const LOOKS: [Look; 3] = [Look::Neutral, Look::Vivid, Look::Flat];
 

@@ -1,7 +1,7 @@
 //! Transfer curve and sample type: from linear light to what files hold.
 
-use colour::TransferCurve;
-use photo::{Display, Encoded, Rgb};
+use darkroot_colour::TransferCurve;
+use darkroot_photo::{Display, Encoded, Rgb};
 
 /// Smallest exponent of the table: below 2^-40 the curve is a straight line to 0.
 const EXPONENTS: i32 = 40;
@@ -77,7 +77,7 @@ pub fn encode_unbounded(mut picture: Rgb<Display>, encoder: &Encoder) -> Rgb<Enc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colour::RgbSpace;
+    use darkroot_colour::RgbSpace;
 
     #[test]
     fn the_table_is_the_curve_to_a_quarter_step_of_16_bits() {

@@ -1,10 +1,10 @@
 //! The white of the light: from the camera's neutral to a chromaticity and back (DNG 1.7, chapter 6, "Mapping
 //! Camera Color Space to CIE XYZ Space").
 
-use colour::adaptation::bradford;
-use colour::temperature::{Temperature, daylight_xy};
-use colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, white};
-use photo::{Calibration, Capture};
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::temperature::{Temperature, daylight_xy};
+use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, white};
+use darkroot_photo::{Calibration, Capture};
 
 use crate::survey::Survey;
 

@@ -9,10 +9,10 @@ use std::fs::File;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use colour::{Matrix3, RgbSpace, TransferCurve, Vector3, white};
-use encode::{Format, Options};
-use photo::metadata::{Directory, Value, tag};
-use photo::{Metadata, Picture, PictureSpace, Samples, Size};
+use darkroot_colour::{Matrix3, RgbSpace, TransferCurve, Vector3, white};
+use darkroot_encode::{Format, Options};
+use darkroot_photo::metadata::{Directory, Value, tag};
+use darkroot_photo::{Metadata, Picture, PictureSpace, Samples, Size};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let name = format!("{stem}-{bits}.{}", format.extension());
                 let mut file = File::create(directory.join(&name))?;
                 let start = Instant::now();
-                encode::write(&picture, format, &Options::default(), &metadata(), &mut file)?;
+                darkroot_encode::write(&picture, format, &Options::default(), &metadata(), &mut file)?;
                 let bytes = file.metadata()?.len();
                 eprintln!("{:6} ms {:9} kB  {name}", start.elapsed().as_millis(), bytes / 1000);
             }

@@ -5,7 +5,7 @@
 
 use std::io::Write;
 
-use photo::Metadata;
+use darkroot_photo::Metadata;
 use ravif::{Encoder, Img, RGB8};
 
 use crate::format::Frame;

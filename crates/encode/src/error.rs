@@ -3,7 +3,7 @@
 use std::error::Error as StdError;
 use std::io;
 
-use photo::Size;
+use darkroot_photo::Size;
 
 use crate::Format;
 

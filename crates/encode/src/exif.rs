@@ -2,11 +2,11 @@
 
 use std::io::Cursor;
 
-use ::exif::experimental::Writer;
-use ::exif::{Context, In, Rational, SRational, Tag};
-use colour::RgbSpace;
-use photo::metadata::{Directory, Field, Value, tag};
-use photo::{Metadata, Picture, PictureSpace};
+use exif::experimental::Writer;
+use exif::{Context, In, Rational, SRational, Tag};
+use darkroot_colour::RgbSpace;
+use darkroot_photo::metadata::{Directory, Field, Value, tag};
+use darkroot_photo::{Metadata, Picture, PictureSpace};
 
 /// The fields as a block in the structure of TIFF, little endian, without the "Exif\0\0" that some files put
 /// before it. It is empty when there are no fields.
@@ -14,8 +14,8 @@ use photo::{Metadata, Picture, PictureSpace};
 /// The orientation in the block is always 1, as the pixels are upright already. Fields that say how another
 /// file stores its pixels, and fields without a value, are left out. Text keeps its UTF-8 bytes.
 pub fn block(metadata: &Metadata) -> Vec<u8> {
-    let fields: Vec<::exif::Field> = fields(metadata)
-        .map(|field| ::exif::Field {
+    let fields: Vec<exif::Field> = fields(metadata)
+        .map(|field| exif::Field {
             tag: Tag(context(field.directory), field.tag),
             ifd_num: In::PRIMARY,
             value: value(&field.value),
@@ -24,10 +24,10 @@ pub fn block(metadata: &Metadata) -> Vec<u8> {
     if fields.is_empty() {
         return Vec::new();
     }
-    let upright = ::exif::Field {
+    let upright = exif::Field {
         tag: Tag(Context::Tiff, tag::ORIENTATION),
         ifd_num: In::PRIMARY,
-        value: ::exif::Value::Short(vec![1]),
+        value: exif::Value::Short(vec![1]),
     };
     let mut writer = Writer::new();
     writer.push_field(&upright);
@@ -122,18 +122,18 @@ fn context(directory: Directory) -> Context {
     }
 }
 
-fn value(value: &Value) -> ::exif::Value {
+fn value(value: &Value) -> exif::Value {
     match value {
-        Value::Text(text) => ::exif::Value::Ascii(vec![text.as_bytes().to_vec()]),
-        Value::Bytes(v) => ::exif::Value::Byte(v.clone()),
-        Value::Undefined(v) => ::exif::Value::Undefined(v.clone(), 0),
-        Value::Shorts(v) => ::exif::Value::Short(v.clone()),
-        Value::Longs(v) => ::exif::Value::Long(v.clone()),
+        Value::Text(text) => exif::Value::Ascii(vec![text.as_bytes().to_vec()]),
+        Value::Bytes(v) => exif::Value::Byte(v.clone()),
+        Value::Undefined(v) => exif::Value::Undefined(v.clone(), 0),
+        Value::Shorts(v) => exif::Value::Short(v.clone()),
+        Value::Longs(v) => exif::Value::Long(v.clone()),
         Value::Rationals(v) => {
-            ::exif::Value::Rational(v.iter().map(|&(num, denom)| Rational { num, denom }).collect())
+            exif::Value::Rational(v.iter().map(|&(num, denom)| Rational { num, denom }).collect())
         }
         Value::SignedRationals(v) => {
-            ::exif::Value::SRational(v.iter().map(|&(num, denom)| SRational { num, denom }).collect())
+            exif::Value::SRational(v.iter().map(|&(num, denom)| SRational { num, denom }).collect())
         }
     }
 }
@@ -143,11 +143,11 @@ mod tests {
     use super::*;
     use crate::testing::{metadata, picture};
 
-    fn read(block: Vec<u8>) -> ::exif::Exif {
-        ::exif::Reader::new().read_raw(block).unwrap()
+    fn read(block: Vec<u8>) -> exif::Exif {
+        exif::Reader::new().read_raw(block).unwrap()
     }
 
-    fn number(exif: &::exif::Exif, tag: Tag) -> Option<u32> {
+    fn number(exif: &exif::Exif, tag: Tag) -> Option<u32> {
         exif.get_field(tag, In::PRIMARY)?.value.get_uint(0)
     }
 
@@ -158,7 +158,7 @@ mod tests {
             let back = exif.get_field(Tag(context(field.directory), field.tag), In::PRIMARY).unwrap();
             match (&back.value, value(&field.value)) {
                 // Where the bytes lay is part of the value that was read.
-                (::exif::Value::Undefined(back, _), ::exif::Value::Undefined(there, _)) => {
+                (exif::Value::Undefined(back, _), exif::Value::Undefined(there, _)) => {
                     assert_eq!(*back, there);
                 }
                 (back, there) => assert_eq!(format!("{back:?}"), format!("{there:?}")),

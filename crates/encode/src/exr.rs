@@ -5,13 +5,13 @@
 
 use std::io::{Seek, Write};
 
-use ::exr::meta::attribute::Chromaticities;
-use ::exr::prelude::{
+use exr::meta::attribute::Chromaticities;
+use exr::prelude::{
     Blocks, Compression, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Text, Vec2,
     WritableImage,
 };
-use photo::metadata::{Directory, tag};
-use photo::{Metadata, PictureSpace, Samples};
+use darkroot_photo::metadata::{Directory, tag};
+use darkroot_photo::{Metadata, PictureSpace, Samples};
 
 use crate::format::Frame;
 use crate::{Error, Format};
@@ -48,7 +48,7 @@ pub(crate) fn write(
 /// The space; camera RGB has no chromaticities.
 fn chromaticities(space: &PictureSpace) -> Option<Chromaticities> {
     let PictureSpace::Rgb(space) = space else { return None };
-    let xy = |p: colour::Xy| Vec2(p.x as f32, p.y as f32);
+    let xy = |p: darkroot_colour::Xy| Vec2(p.x as f32, p.y as f32);
     let [red, green, blue] = space.primaries.map(xy);
     Some(Chromaticities { red, green, blue, white: xy(space.white) })
 }
@@ -92,11 +92,11 @@ fn utf8(text: &str) -> Text {
 mod tests {
     use super::*;
     use crate::testing::{assert_lossless, encoded, metadata, picture};
-    use ::exr::meta::MetaData;
-    use colour::RgbSpace;
+    use exr::meta::MetaData;
+    use darkroot_colour::RgbSpace;
 
     const LINEAR: PictureSpace =
-        PictureSpace::Rgb(RgbSpace { curve: colour::TransferCurve::Linear, ..RgbSpace::REC2020 });
+        PictureSpace::Rgb(RgbSpace { curve: darkroot_colour::TransferCurve::Linear, ..RgbSpace::REC2020 });
 
     #[test]
     fn the_samples_come_back() {
@@ -116,7 +116,7 @@ mod tests {
         assert!(crate::testing::decoded(Format::Exr, &file).1 == extreme.samples);
     }
 
-    fn read(space: PictureSpace) -> ::exr::meta::header::Header {
+    fn read(space: PictureSpace) -> exr::meta::header::Header {
         let file = encoded(&picture(3, 2, 32, space), Format::Exr, &metadata()).unwrap();
         MetaData::read_from_buffered(&file[..], true).unwrap().headers.remove(0)
     }

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use colour::{RgbSpace, TransferCurve};
-use photo::{Picture, PictureSpace, Samples, Size};
+use darkroot_colour::{RgbSpace, TransferCurve};
+use darkroot_photo::{Picture, PictureSpace, Samples, Size};
 
 use crate::Error;
 
@@ -210,7 +210,7 @@ impl<'a> Frame<'a> {
 mod tests {
     use super::*;
     use crate::testing::{encoded, picture, picture_for, spaces};
-    use photo::Metadata;
+    use darkroot_photo::Metadata;
 
     const SRGB: PictureSpace = PictureSpace::Rgb(RgbSpace::SRGB);
 

@@ -3,9 +3,9 @@
 //! Three colorants, the white and one parametric curve say all there is to say about such a space, in some 500
 //! bytes. They are written here and not by a library because the one at hand stamps them with the time of day.
 
-use colour::adaptation::bradford;
-use colour::{Matrix3, RgbSpace, TransferCurve, white};
-use photo::PictureSpace;
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::{Matrix3, RgbSpace, TransferCurve, white};
+use darkroot_photo::PictureSpace;
 
 /// Matrix profile of a space, for "monitor" use: colorants adapted to D50 by Bradford, its adaptation matrix,
 /// its transfer curve, and the name of the space. The same space gives the same bytes.
@@ -148,7 +148,7 @@ fn curve(curve: TransferCurve) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::testing::spaces;
-    use colour::Vector3;
+    use darkroot_colour::Vector3;
     use moxcms::{ColorProfile, Layout, TransformOptions};
 
     fn parsed(space: &RgbSpace) -> ColorProfile {

@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder, EncodingError, SamplingFactor};
-use photo::Metadata;
-use photo::metadata::Directory;
+use darkroot_photo::Metadata;
+use darkroot_photo::metadata::Directory;
 
 use crate::format::Frame;
 use crate::{ChromaSubsampling, Error, Format, Options, exif};
@@ -66,9 +66,9 @@ fn block_that_fits(metadata: &Metadata) -> Result<Vec<u8>, Error> {
 mod tests {
     use super::*;
     use crate::testing::{SIZES, decoded, metadata, picture};
-    use colour::RgbSpace;
-    use photo::metadata::Value;
-    use photo::{Picture, PictureSpace, Samples};
+    use darkroot_colour::RgbSpace;
+    use darkroot_photo::metadata::Value;
+    use darkroot_photo::{Picture, PictureSpace, Samples};
 
     fn file(picture: &Picture, options: &Options, metadata: &Metadata) -> Vec<u8> {
         let mut file = std::io::Cursor::new(Vec::new());

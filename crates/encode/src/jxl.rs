@@ -7,8 +7,8 @@
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use colour::{RgbSpace, TransferCurve, Xy, white};
-use photo::{Metadata, PictureSpace, Samples};
+use darkroot_colour::{RgbSpace, TransferCurve, Xy, white};
+use darkroot_photo::{Metadata, PictureSpace, Samples};
 use zune_core::bit_depth::BitDepth;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::EncoderOptions;
@@ -316,7 +316,7 @@ fn write_box(kind: &[u8; 4], contents: &[&[u8]], out: &mut impl Write) -> std::i
 mod tests {
     use super::*;
     use crate::testing::{assert_lossless, encoded, picture, spaces};
-    use photo::{Picture, Size};
+    use darkroot_photo::{Picture, Size};
 
     const SRGB: PictureSpace = PictureSpace::Rgb(RgbSpace::SRGB);
 

@@ -11,18 +11,18 @@
 //! | JPEG XL | 8, 16 | all but those with a ROMM or L\* curve | lossless |
 //!
 //! ```
-//! use encode::{Format, Options};
-//! use photo::{Metadata, Picture, PictureSpace, Samples, Size};
+//! use darkroot_encode::{Format, Options};
+//! use darkroot_photo::{Metadata, Picture, PictureSpace, Samples, Size};
 //!
 //! let picture = Picture {
 //!     size: Size { width: 2, height: 1 },
 //!     samples: Samples::U8(vec![255, 0, 0, 0, 0, 255]),
-//!     space: PictureSpace::Rgb(colour::RgbSpace::SRGB),
+//!     space: PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB),
 //! };
 //! let mut file = std::io::Cursor::new(Vec::new());
-//! encode::write(&picture, Format::Png, &Options::default(), &Metadata::default(), &mut file)?;
+//! darkroot_encode::write(&picture, Format::Png, &Options::default(), &Metadata::default(), &mut file)?;
 //! assert!(file.into_inner().starts_with(b"\x89PNG"));
-//! # Ok::<(), encode::Error>(())
+//! # Ok::<(), darkroot_encode::Error>(())
 //! ```
 //!
 //! The same picture, options and metadata give the same bytes: nothing here looks at the clock, at the
@@ -33,7 +33,7 @@
 
 use std::io::{Seek, Write};
 
-use photo::{Metadata, Picture};
+use darkroot_photo::{Metadata, Picture};
 
 pub mod format;
 pub use format::Format;
@@ -98,8 +98,8 @@ mod tests {
     use super::*;
     use crate::testing::{SIZES, encoded, metadata, picture, picture_for};
     use ::image::ImageDecoder;
-    use colour::RgbSpace;
-    use photo::PictureSpace;
+    use darkroot_colour::RgbSpace;
+    use darkroot_photo::PictureSpace;
 
     #[test]
     fn a_picture_of_any_size_can_be_written_in_every_format() {

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::io::Write;
 
-use ::png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter, Info};
-use photo::{Metadata, Samples};
+use png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter, Info};
+use darkroot_photo::{Metadata, Samples};
 
 use crate::format::Frame;
 use crate::{Error, Format, exif};
@@ -54,8 +54,8 @@ const LEVEL: u8 = 1;
 mod tests {
     use crate::Format;
     use crate::testing::assert_lossless;
-    use colour::RgbSpace;
-    use photo::PictureSpace;
+    use darkroot_colour::RgbSpace;
+    use darkroot_photo::PictureSpace;
 
     #[test]
     fn samples_of_8_bits_come_back() {

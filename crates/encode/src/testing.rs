@@ -2,9 +2,9 @@
 
 use std::io::Cursor;
 
-use colour::RgbSpace;
-use photo::metadata::{Directory, Value, tag};
-use photo::{Metadata, Picture, PictureSpace, Samples, Size};
+use darkroot_colour::RgbSpace;
+use darkroot_photo::metadata::{Directory, Value, tag};
+use darkroot_photo::{Metadata, Picture, PictureSpace, Samples, Size};
 
 use crate::{Error, Format, Options};
 

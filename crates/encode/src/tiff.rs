@@ -2,16 +2,16 @@
 
 use std::io::{Seek, Write};
 
-use ::tiff::decoder::ifd::Entry;
-use ::tiff::encoder::colortype::{ColorType, RGB8, RGB16, RGB32Float};
-use ::tiff::encoder::{
+use tiff::decoder::ifd::Entry;
+use tiff::encoder::colortype::{ColorType, RGB8, RGB16, RGB32Float};
+use tiff::encoder::{
     Compression, DeflateLevel, DirectoryEncoder, Predictor, TiffEncoder, TiffKind, TiffKindBig,
     TiffKindStandard, TiffValue,
 };
-use ::tiff::tags::{Tag, Type};
-use ::tiff::{Directory as Entries, TiffError, TiffResult};
-use photo::metadata::{Directory, Value};
-use photo::{Metadata, PictureSpace, Samples};
+use tiff::tags::{Tag, Type};
+use tiff::{Directory as Entries, TiffError, TiffResult};
+use darkroot_photo::metadata::{Directory, Value};
+use darkroot_photo::{Metadata, PictureSpace, Samples};
 
 use crate::format::Frame;
 use crate::{Error, Format, Options, TiffCompression, exif};
@@ -159,9 +159,9 @@ mod tests {
 
     use super::*;
     use crate::testing::{assert_lossless, decoded, encoded, metadata, picture};
-    use ::tiff::decoder::Decoder;
-    use colour::RgbSpace;
-    use photo::metadata::tag;
+    use tiff::decoder::Decoder;
+    use darkroot_colour::RgbSpace;
+    use darkroot_photo::metadata::tag;
 
     const SRGB: PictureSpace = PictureSpace::Rgb(RgbSpace::SRGB);
 
@@ -234,7 +234,7 @@ mod tests {
         /// The numbers of the directory that a tag of the first one points to.
         fn read_directory_tags_at(&mut self, pointer: u16) -> std::collections::HashMap<u16, u32> {
             let offset = self.get_tag_u64(Tag::from_u16_exhaustive(pointer)).unwrap();
-            let entries = self.read_directory(::tiff::tags::IfdPointer(offset)).unwrap();
+            let entries = self.read_directory(tiff::tags::IfdPointer(offset)).unwrap();
             let tags: Vec<_> = entries.iter().map(|(tag, _)| tag).collect();
             let mut directory = self.read_directory_tags(&entries);
             let numbers = tags.into_iter().filter_map(|tag| {

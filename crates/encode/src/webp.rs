@@ -4,7 +4,7 @@ use std::io::Write;
 
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
-use photo::Metadata;
+use darkroot_photo::Metadata;
 
 use crate::format::Frame;
 use crate::{Error, Format, exif};
@@ -23,8 +23,8 @@ pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut impl Write
 mod tests {
     use crate::Format;
     use crate::testing::assert_lossless;
-    use colour::RgbSpace;
-    use photo::PictureSpace;
+    use darkroot_colour::RgbSpace;
+    use darkroot_photo::PictureSpace;
 
     #[test]
     fn the_samples_come_back() {

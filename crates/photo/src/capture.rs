@@ -1,6 +1,6 @@
 //! A decoded raw file: everything known about one exposure.
 
-use colour::{Matrix3, Xy};
+use darkroot_colour::{Matrix3, Xy};
 
 use crate::{BlackLevel, Correction, Counts, Metadata, Orientation, Rect, WhiteLevel};
 

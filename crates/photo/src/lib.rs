@@ -14,7 +14,7 @@
 //! A stage takes one of these types and gives another, so a wrong order of stages does not compile:
 //!
 //! ```compile_fail
-//! use photo::{Rgb, Scene, Encoded, Size};
+//! use darkroot_photo::{Rgb, Scene, Encoded, Size};
 //! fn tone(picture: Rgb<Scene>) -> Rgb<Encoded> { unimplemented!() }
 //! let encoded: Rgb<Encoded> = Rgb::black(Size { width: 2, height: 2 });
 //! tone(encoded); // A picture cannot be toned twice.

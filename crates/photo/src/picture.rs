@@ -1,6 +1,6 @@
 //! The finished picture: what an encoder writes.
 
-use colour::RgbSpace;
+use darkroot_colour::RgbSpace;
 
 use crate::Size;
 
@@ -39,7 +39,7 @@ impl PictureSpace {
     /// Name as people write it.
     pub fn name(&self) -> String {
         match self {
-            Self::Rgb(space) if space.curve == colour::TransferCurve::Linear => {
+            Self::Rgb(space) if space.curve == darkroot_colour::TransferCurve::Linear => {
                 format!("{}, linear", space.name)
             }
             Self::Rgb(space) => space.name.to_owned(),

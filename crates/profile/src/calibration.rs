@@ -1,7 +1,7 @@
 //! A camera's profile: one model per light, and which one serves which white.
 
-use colour::temperature::Temperature;
-use colour::{Xy, Xyz};
+use darkroot_colour::temperature::Temperature;
+use darkroot_colour::{Xy, Xyz};
 
 use crate::{Figures, Kind, Model};
 
@@ -159,7 +159,7 @@ impl Profile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colour::{Matrix3, white};
+    use darkroot_colour::{Matrix3, white};
 
     fn two_lights() -> Profile {
         let camera =

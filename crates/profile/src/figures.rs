@@ -1,7 +1,7 @@
 //! How far colours are off: the figures that stand beside every fit.
 
-use colour::Xyz;
-use colour::difference::{de_uv, de2000};
+use darkroot_colour::Xyz;
+use darkroot_colour::difference::{de_uv, de2000};
 
 /// Mean, median, 95th percentile and largest of a set of colour differences.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

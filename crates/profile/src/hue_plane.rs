@@ -1,7 +1,7 @@
 //! A matrix for each hue: hue-plane preserving colour correction (Andersen and Connah, "Weighted Constrained
 //! Hue-Plane Preserving Camera Characterization", IEEE TIP 25(9), 2016).
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 
 use crate::model::Part;
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use colour::{Matrix3, Vector3, Xyz, white};
+use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 
 use crate::fit::metric::lab_derivatives;
 use crate::{Calibration, Model};
@@ -167,7 +167,7 @@ pub fn check(calibration: &Calibration) -> Vec<Finding> {
 /// CIEDE2000 between what the model makes of white and D50.
 pub fn white_error(model: &Model) -> f64 {
     let found = model.xyz([1.0; 3]).lab(white::D50);
-    colour::difference::de2000(found, white::D50.lab(white::D50))
+    darkroot_colour::difference::de2000(found, white::D50.lab(white::D50))
 }
 
 /// Share of saturated colours with negative luminance.

@@ -1,6 +1,6 @@
 //! A model of one camera under one light: a sum of parts, applied to single colours in `f64`.
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 
 use crate::{HuePlane, Order, Polynomial, Residual, RootPolynomial};
 

@@ -1,6 +1,6 @@
 //! Plain polynomials: what root polynomials were made to replace. They are here to be compared with.
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 
 use crate::model::Part;
 

@@ -1,6 +1,6 @@
 //! A smooth function of chromaticity times the mean of the channels: the residual that a hue-plane model leaves.
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 
 use crate::model::Part;
 

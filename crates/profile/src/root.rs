@@ -1,6 +1,6 @@
 //! Root polynomials (Finlayson, Mackiewicz, Hurlbert 2015), applied to single colours in `f64`.
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 
 use crate::model::Part;
 use crate::{Order, Term};

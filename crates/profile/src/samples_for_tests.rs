@@ -1,6 +1,6 @@
 //! Models with every part, for the tests of this crate.
 
-use colour::{Matrix3, Xyz};
+use darkroot_colour::{Matrix3, Xyz};
 
 use crate::residual::Centre;
 use crate::{HuePlane, Model, Order, Polynomial, Residual, RootPolynomial};

@@ -1,6 +1,6 @@
 //! Reflectances under a light, through a camera's sensitivities: colours that are known from both sides.
 
-use colour::{Spectrum, Xyz};
+use darkroot_colour::{Spectrum, Xyz};
 
 use crate::fit::{FitError, Samples};
 

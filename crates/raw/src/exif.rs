@@ -2,7 +2,7 @@
 
 use exif::{Context, In, Reader, Value as ExifValue};
 use flashraw::{PreviewEncoding, RawMetadata};
-use photo::metadata::{Directory, Metadata, Value, tag};
+use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 
 use crate::screen::Container;
 

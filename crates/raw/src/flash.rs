@@ -1,12 +1,12 @@
 //! The default decoder: flashraw.
 
-use colour::{Matrix3, Xy};
+use darkroot_colour::{Matrix3, Xy};
 use flashraw::{
     BlackLevel as FlashBlack, CfaColor, CfaPattern, ColorMatrices, ColorMatrix, CorruptionPolicy,
     DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData, SampleFormat,
     SensorLayout,
 };
-use photo::{
+use darkroot_photo::{
     AsShot, BlackLevel, Calibration, Camera, Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Rect,
     Size, Source, WhiteLevel,
 };

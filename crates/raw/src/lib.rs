@@ -7,7 +7,7 @@
 //! **What it does not do:** it opens no files, it corrects nothing but what the file's own OpcodeList1 asks for,
 //! and it never guesses in silence: what had to be assumed stands in [`Capture::notes`].
 
-use photo::Capture;
+use darkroot_photo::Capture;
 
 pub mod error;
 pub use error::Error;

@@ -1,7 +1,7 @@
 //! The second decoder: rawloader. Only its samples are used; what they mean comes from the headers as
 //! [`crate::flash`] and our own screen read them.
 
-use photo::{Capture, Counts, Layout, Mosaic, Size};
+use darkroot_photo::{Capture, Counts, Layout, Mosaic, Size};
 use rawloader::RawImageData;
 
 use crate::screen::{DNG_VERSION, LINEARIZATION_TABLE};

@@ -1,7 +1,7 @@
 //! DNG opcode lists 2 and 3 as corrections (DNG 1.7, chapter 7). Numbers in them are big-endian.
 
-use photo::Rect;
-use photo::correction::{Area, Correction, GainMap, Vignette, Warp};
+use darkroot_photo::Rect;
+use darkroot_photo::correction::{Area, Correction, GainMap, Vignette, Warp};
 
 /// Flag bit: a reader that does not know the opcode may skip it.
 const OPTIONAL: u32 = 1;

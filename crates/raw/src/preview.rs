@@ -1,7 +1,7 @@
 //! The picture that the camera embedded in the raw file.
 
 use flashraw::{FlashRaw, PreviewEncoding};
-use photo::{Orientation, Size};
+use darkroot_photo::{Orientation, Size};
 
 use crate::{Error, guarded, screen};
 

@@ -1,6 +1,6 @@
 //! A fingerprint of decoded samples.
 
-use photo::Counts;
+use darkroot_photo::Counts;
 
 /// FNV-1a over the samples as 64-bit words, one xor and multiply a sample, row by row over the whole frame
 /// before any crop. Floating-point samples enter by their bits.

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // A test may stop.
 
-use raw::{Decoder, Limits, decode};
+use darkroot_raw::{Decoder, Limits, decode};
 
 /// xorshift64* (Marsaglia 2003; Vigna 2016): damage that is the same on every machine.
 struct Random(u64);

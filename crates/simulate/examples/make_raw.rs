@@ -5,10 +5,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use colour::Spectrum;
-use photo::{AsShot, Capture, Counts, Layout, Orientation, Size};
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene, camera, dng, nef, samples};
+use darkroot_colour::Spectrum;
+use darkroot_photo::{AsShot, Capture, Counts, Layout, Orientation, Size};
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene, camera, dng, nef, samples};
 
 const USAGE: &str = "make_raw --format nef|dng --width W --height H --out PATH
   [--scene still-life|flat|ramp|gradient] [--cfa RGGB|...|xtrans] [--linear] [--bits 12|14]

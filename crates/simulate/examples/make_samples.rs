@@ -10,7 +10,7 @@ fn main() -> std::io::Result<()> {
     let mut manifest = String::from(
         "# Written by `cargo run -p darkroot-simulate --example make_samples`, byte for byte the same each time.\n",
     );
-    for sample in simulate::samples::all() {
+    for sample in darkroot_simulate::samples::all() {
         std::fs::write(folder.join(sample.name), &sample.bytes)?;
         let hash = Sha256::digest(&sample.bytes).iter().fold(String::new(), |mut hash, byte| {
             let _ = write!(hash, "{byte:02x}"); // Writing to a string cannot fail.

@@ -1,7 +1,7 @@
 //! A simulated camera: what its sensor sees, how it counts, and its colour matrices.
 
-use colour::{Matrix3, Spectrum, Vector3, Xyz, white};
-use photo::{BlackLevel, Calibration, Cfa, Layout};
+use darkroot_colour::{Matrix3, Spectrum, Vector3, Xyz, white};
+use darkroot_photo::{BlackLevel, Calibration, Cfa, Layout};
 
 use crate::chart;
 use crate::exact::{exp, gaussian};
@@ -70,9 +70,9 @@ impl Camera {
     }
 
     /// Its names as a decoder reports them.
-    pub fn names(&self) -> photo::Camera {
+    pub fn names(&self) -> darkroot_photo::Camera {
         let nikon = self.make.starts_with("NIKON");
-        photo::Camera {
+        darkroot_photo::Camera {
             make: self.make.clone(),
             model: self.model.clone(),
             common_make: if nikon { "Nikon".to_owned() } else { self.make.clone() },
@@ -168,7 +168,7 @@ fn vector(xyz: Xyz) -> Vector3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colour::difference::de2000;
+    use darkroot_colour::difference::de2000;
 
     fn lights() -> [(Spectrum, f64); 2] {
         [(Spectrum::daylight(6504.0), 6504.0), (Spectrum::illuminant_a(), 2856.0)]

@@ -1,6 +1,6 @@
 //! A chart of 24 patches in the layout of the ColorChecker Classic.
 
-use colour::{Lab, Spectrum};
+use darkroot_colour::{Lab, Spectrum};
 
 use crate::reflectance;
 
@@ -58,7 +58,7 @@ const fn lab(l: f64, a: f64, b: f64) -> Lab {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colour::difference::de2000;
+    use darkroot_colour::difference::de2000;
 
     #[test]
     fn every_patch_has_its_published_colour() {

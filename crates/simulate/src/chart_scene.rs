@@ -1,6 +1,6 @@
 //! A chart held before a wall, seen in perspective.
 
-use colour::{Matrix3, Vector3};
+use darkroot_colour::{Matrix3, Vector3};
 
 /// Samples a pixel in each direction.
 const OVER: usize = 4;

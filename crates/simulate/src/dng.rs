@@ -1,8 +1,8 @@
 //! Captures as DNG bytes (Adobe, Digital Negative Specification 1.4).
 
-use colour::Matrix3;
-use photo::metadata::{Directory, Value};
-use photo::{AsShot, BlackLevel, Calibration, Capture, Cfa, Counts, Filter, Layout, Rect};
+use darkroot_colour::Matrix3;
+use darkroot_photo::metadata::{Directory, Value};
+use darkroot_photo::{AsShot, BlackLevel, Calibration, Capture, Cfa, Counts, Filter, Layout, Rect};
 
 use crate::preview::preview;
 use crate::tiff_writer::{Ifd, file};

@@ -1,8 +1,8 @@
 //! Scene x light x camera -> a capture.
 
-use colour::Spectrum;
-use photo::metadata::{Directory, Value, tag};
-use photo::{AsShot, Capture, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Size, Source, WhiteLevel};
+use darkroot_colour::Spectrum;
+use darkroot_photo::metadata::{Directory, Value, tag};
+use darkroot_photo::{AsShot, Capture, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Size, Source, WhiteLevel};
 
 use crate::exact::exp2;
 use crate::{Camera, Scene, chart, random};

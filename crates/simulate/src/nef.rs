@@ -2,8 +2,8 @@
 //!
 //! Structure as ExifTool documents it; the trees of the lossless compression are constants of the format.
 
-use photo::metadata::Value;
-use photo::{AsShot, Capture, Cfa, Counts, Layout, Mosaic};
+use darkroot_photo::metadata::Value;
+use darkroot_photo::{AsShot, Capture, Cfa, Counts, Layout, Mosaic};
 
 use crate::bits::{Bits, category};
 use crate::dng::{code, exif_directory, preview_directory};
@@ -57,7 +57,7 @@ pub fn write(capture: &Capture, storage: Storage) -> Option<Vec<u8>> {
     let mut root = Ifd::default();
     preview_directory(&mut root, capture);
     root.fields(
-        capture.metadata.fields().iter().filter(|f| f.directory == photo::metadata::Directory::Image),
+        capture.metadata.fields().iter().filter(|f| f.directory == darkroot_photo::metadata::Directory::Image),
     )
     .text(tag::MAKE, &capture.camera.make)
     .text(tag::MODEL, &capture.camera.model)

@@ -1,7 +1,7 @@
 //! A small developed picture for the first directory of a file.
 
-use colour::{Matrix3, RgbSpace, Vector3, white};
-use photo::{AsShot, Capture, Counts, Layout, Size};
+use darkroot_colour::{Matrix3, RgbSpace, Vector3, white};
+use darkroot_photo::{AsShot, Capture, Counts, Layout, Size};
 
 use crate::exact::root_2_4;
 

@@ -1,6 +1,6 @@
 //! Smooth reflectances from a formula of three numbers, fitted to a colour.
 
-use colour::{Lab, Matrix3, Spectrum, Vector3, Xyz};
+use darkroot_colour::{Lab, Matrix3, Spectrum, Vector3, Xyz};
 
 /// Wavelength where the polynomial of [`sigmoid`] has its origin, and its unit, nm.
 const CENTRE_NM: f64 = 560.0;
@@ -67,7 +67,7 @@ pub fn lab_of(reflectance: &Spectrum) -> Lab {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colour::difference::de2000;
+    use darkroot_colour::difference::de2000;
 
     #[test]
     fn a_fitted_reflectance_has_its_colour() {

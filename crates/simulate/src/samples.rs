@@ -1,6 +1,6 @@
 //! The raw files in `samples/` of the repository, made anew.
 
-use photo::Size;
+use darkroot_photo::Size;
 
 use crate::expose::expose;
 use crate::{Camera, Exposure, Scene, dng, nef};

@@ -1,7 +1,7 @@
 //! What each pixel shows: light and shade times a mixture of reflectances.
 
-use colour::{Lab, Spectrum, Xyz};
-use photo::{Rect, Size};
+use darkroot_colour::{Lab, Spectrum, Xyz};
+use darkroot_photo::{Rect, Size};
 
 use crate::chart_scene::{ChartScene, FRAME_REFLECTANCE, WALL_REFLECTANCE};
 use crate::exact::exp2;

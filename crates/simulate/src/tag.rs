@@ -1,6 +1,6 @@
 //! Tag numbers of TIFF 6.0, TIFF/EP, Exif 2.32 and DNG 1.4.
 
-pub(crate) use photo::metadata::tag::{MAKE, MODEL, ORIENTATION};
+pub(crate) use darkroot_photo::metadata::tag::{MAKE, MODEL, ORIENTATION};
 
 pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
 pub(crate) const IMAGE_WIDTH: u16 = 256;

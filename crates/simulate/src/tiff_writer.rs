@@ -1,6 +1,6 @@
 //! TIFF structure (TIFF 6.0, little-endian): directories with their values first, picture data last.
 
-use photo::metadata::{Field, Value};
+use darkroot_photo::metadata::{Field, Value};
 
 /// Type numbers of TIFF 6.0, section 2.
 mod kind {

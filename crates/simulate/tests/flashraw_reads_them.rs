@@ -2,12 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
 
-use colour::Spectrum;
+use darkroot_colour::Spectrum;
 use flashraw::{CfaColor, DecodeOptions, FlashRaw, OutputFormat, RawFrame};
-use photo::{AsShot, BlackLevel, Capture, Counts, Filter, Layout, Mosaic, Orientation, Size};
-use simulate::camera::{filters, x_trans};
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene, dng, nef};
+use darkroot_photo::{AsShot, BlackLevel, Capture, Counts, Filter, Layout, Mosaic, Orientation, Size};
+use darkroot_simulate::camera::{filters, x_trans};
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene, dng, nef};
 
 const SIZE: Size = Size { width: 300, height: 200 };
 

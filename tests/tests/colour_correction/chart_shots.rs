@@ -2,20 +2,20 @@
 
 use std::path::PathBuf;
 
-use chart::{Reference, ReferenceColour};
-use colour::measured::Measured;
-use colour::{Spectrum, Vector3, Xyz, adaptation, white};
+use darkroot_chart::{Reference, ReferenceColour};
+use darkroot_colour::measured::Measured;
+use darkroot_colour::{Spectrum, Vector3, Xyz, adaptation, white};
 use darkroot::light::NamedLight;
 use darkroot::shot::Verdict;
 use darkroot::{ChartRequest, MadeProfile, Settings, ShotOptions, make_profile};
-use photo::{Capture, Counts, Layout, Size};
-use profile::fit::population::Population;
-use profile::fit::prior::Prior;
-use profile::fit::virtual_set::VirtualSet;
-use profile::fit::{self, Knowledge, spectral};
-use profile::spectra::white as white_of;
-use profile::{Errors, Kind, Model, Sensitivities};
-use simulate::{Camera, Exposure, Scene, dng, expose::expose};
+use darkroot_photo::{Capture, Counts, Layout, Size};
+use darkroot_profile::fit::population::Population;
+use darkroot_profile::fit::prior::Prior;
+use darkroot_profile::fit::virtual_set::VirtualSet;
+use darkroot_profile::fit::{self, Knowledge, spectral};
+use darkroot_profile::spectra::white as white_of;
+use darkroot_profile::{Errors, Kind, Model, Sensitivities};
+use darkroot_simulate::{Camera, Exposure, Scene, dng, expose::expose};
 
 use super::data;
 use super::held_out::unseen;
@@ -142,7 +142,7 @@ struct Mixed {
 
 /// The light of one lamp as strong as [`expose`] takes it.
 fn as_exposed(body: &Camera, light: &Spectrum) -> Spectrum {
-    let brightest = body.response(&simulate::chart::white(), light).into_iter().fold(0.0, f64::max);
+    let brightest = body.response(&darkroot_simulate::chart::white(), light).into_iter().fold(0.0, f64::max);
     Spectrum(light.0.map(|v| v / brightest))
 }
 
@@ -175,7 +175,7 @@ fn mixed_shot(body: &Camera, patches: &[Spectrum], mixed: Mixed) -> (Capture, Na
     let (lamp, window) = (as_exposed(body, &lamp), as_exposed(body, &window));
     let spectrum = Spectrum(std::array::from_fn(|i| lamp.0[i] * (1.0 - middle) + window.0[i] * middle));
     let white = spectrum.white();
-    let light = profile::Light { name: "lamp and window".to_owned(), xy: white.xy().unwrap() };
+    let light = darkroot_profile::Light { name: "lamp and window".to_owned(), xy: white.xy().unwrap() };
     (shot, NamedLight { light, spectrum: Some(spectrum) })
 }
 
@@ -334,7 +334,7 @@ fn the_passport_in_mixed_light_tells_its_faults() {
         lamp.calibrated.notes
     );
     let clean = made("A", correct_glare());
-    for kind in [Kind::Linear, Kind::Root(profile::Order::Two), Kind::Anchored, Kind::HuePlane] {
+    for kind in [Kind::Linear, Kind::Root(darkroot_profile::Order::Two), Kind::Anchored, Kind::HuePlane] {
         let (before, after) = (left_out(&daylight, kind), left_out(&clean, kind));
         assert!(after < 0.7 * before, "{kind}: {before:.2} {after:.2}");
     }

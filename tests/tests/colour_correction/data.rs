@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use colour::Spectrum;
-use colour::illuminant::Illuminant;
+use darkroot_colour::Spectrum;
+use darkroot_colour::illuminant::Illuminant;
 use darkroot::spectra;
-use profile::Sensitivities;
-use profile::spectra::in_31_channels;
+use darkroot_profile::Sensitivities;
+use darkroot_profile::spectra::in_31_channels;
 
 /// The folder of spectra, where there is one.
 pub(super) fn folder() -> Option<PathBuf> {

@@ -1,9 +1,9 @@
 //! Colours, cameras and lights that took no part in choosing anything: 16 cameras, three lights, four sets of
 //! reflectances, each model fitted to 24 patches and to 96.
 
-use colour::{Spectrum, Xyz};
-use profile::fit;
-use profile::{Errors, Kind, Order};
+use darkroot_colour::{Spectrum, Xyz};
+use darkroot_profile::fit;
+use darkroot_profile::{Errors, Kind, Order};
 use rayon::prelude::*;
 
 use super::data;

@@ -1,9 +1,9 @@
 //! Tables 1 and 2 of Finlayson, Mackiewicz and Hurlbert, CIC 19, 2011, by plain least squares: each figure within
 //! 0.02 of an independent computation (numpy; its output is quoted here).
 
-use colour::Xyz;
-use profile::fit::{self, Samples};
-use profile::{Errors, Kind, Order};
+use darkroot_colour::Xyz;
+use darkroot_profile::fit::{self, Samples};
+use darkroot_profile::{Errors, Kind, Order};
 
 use super::data;
 
@@ -51,7 +51,7 @@ const SFU: Rows = [
     [1.90, 1.26, 5.89, 37.2],
 ];
 
-fn render(reflectances: &[colour::Spectrum]) -> Samples {
+fn render(reflectances: &[darkroot_colour::Spectrum]) -> Samples {
     let light = data::light("D65");
     let camera = data::camera("sony_dxc930_380-780_1").under(&light).unwrap();
     camera.render(reflectances, &light).unwrap()

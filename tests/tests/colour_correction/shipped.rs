@@ -1,11 +1,11 @@
 //! The profiles that are built into the program, against the spectra that they were made from.
 
-use colour::illuminant::Illuminant;
-use colour::{Spectrum, Vector3, Xyz, adaptation, white};
+use darkroot_colour::illuminant::Illuminant;
+use darkroot_colour::{Spectrum, Vector3, Xyz, adaptation, white};
 use darkroot::ProfileStore;
-use profile::lint::{Severity, check};
-use profile::spectra::white as white_of;
-use profile::{Errors, Kind, Model, Sensitivities};
+use darkroot_profile::lint::{Severity, check};
+use darkroot_profile::spectra::white as white_of;
+use darkroot_profile::{Errors, Kind, Model, Sensitivities};
 
 use super::data;
 
@@ -60,7 +60,7 @@ fn lights_between_the_calibrations_are_nearly_as_good() {
     let judge = data::reflectances("refl_iset_esserchart");
     for (light, most) in [("D65", 1.3), ("D55", 1.3), ("D50", 1.6), ("A", 1.7)] {
         let spectrum = Illuminant::by_name(light).unwrap().spectrum();
-        let kelvin = colour::temperature::Temperature::of(spectrum.white().xy().unwrap()).kelvin;
+        let kelvin = darkroot_colour::temperature::Temperature::of(spectrum.white().xy().unwrap()).kelvin;
         let mut sum = 0.0;
         for (name, file) in CAMERAS {
             let camera = data::camera(file);
@@ -104,7 +104,7 @@ fn the_script_makes_the_same_files_again() {
         kind: Kind::Spectral,
         date: "2026-11-22".to_owned(),
     };
-    let text = profile::file::format(&darkroot::from_spectra(&request).unwrap());
+    let text = darkroot_profile::file::format(&darkroot::from_spectra(&request).unwrap());
     let shipped =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../profiles/nikon/d700.toml")).unwrap();
     assert_eq!(text, shipped);

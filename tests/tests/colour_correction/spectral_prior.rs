@@ -1,13 +1,13 @@
 //! The spectral prior on colours, cameras and lights that it never saw. The prior is built from the eleven cameras
 //! of rawtoaces, without the one that is tested; its reflectances are none of those that are judged.
 
-use colour::{Spectrum, Xyz};
-use profile::fit::metric::lab_derivatives;
-use profile::fit::population::Population;
-use profile::fit::prior::Prior;
-use profile::fit::virtual_set::VirtualSet;
-use profile::fit::{self, Knowledge, Samples, spectral};
-use profile::{Errors, Kind, Model};
+use darkroot_colour::{Spectrum, Xyz};
+use darkroot_profile::fit::metric::lab_derivatives;
+use darkroot_profile::fit::population::Population;
+use darkroot_profile::fit::prior::Prior;
+use darkroot_profile::fit::virtual_set::VirtualSet;
+use darkroot_profile::fit::{self, Knowledge, Samples, spectral};
+use darkroot_profile::{Errors, Kind, Model};
 use rayon::prelude::*;
 
 use super::data;

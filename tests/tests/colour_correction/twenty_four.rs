@@ -1,12 +1,12 @@
 //! The papers' protocol on data that the project carries: the simulated camera and its chart of 24 patches, against
 //! numpy's least squares with each patch really left out.
 
-use colour::illuminant::Illuminant;
-use profile::fit::virtual_set::VirtualSet;
-use profile::fit::{self, Samples, spectral};
-use profile::spectra::in_31_channels;
-use profile::{Kind, Order, Sensitivities};
-use simulate::{Camera, chart};
+use darkroot_colour::illuminant::Illuminant;
+use darkroot_profile::fit::virtual_set::VirtualSet;
+use darkroot_profile::fit::{self, Samples, spectral};
+use darkroot_profile::spectra::in_31_channels;
+use darkroot_profile::{Kind, Order, Sensitivities};
+use darkroot_simulate::{Camera, chart};
 
 fn samples() -> Samples {
     let light = in_31_channels(&Illuminant::by_name("D65").unwrap().spectrum());
@@ -94,7 +94,7 @@ fn models_of_the_virtual_set_keep_greys_hold_at_every_exposure_and_do_not_fold()
                 assert!(off.max((one.y * k - other.y).abs()) < 1e-12 * k, "{kind} {k}: {off:e}");
             }
         }
-        assert!(profile::lint::folds(&fit.model) <= 0.0, "{kind} folds");
+        assert!(darkroot_profile::lint::folds(&fit.model) <= 0.0, "{kind} folds");
         let unseen = fit.figures(&samples).leave_one_out.unwrap().de2000.mean;
         println!("{kind}: left out {unseen:.3}, linear {linear:.3}");
         assert!(unseen < 0.5 * linear, "{kind}: {unseen} against {linear}");

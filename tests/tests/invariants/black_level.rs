@@ -1,9 +1,9 @@
 //! Black and white level: no light is black and saturation is white, whatever the numbers in the file.
 
 use darkroot_tests::{brighter, camera, develop, exact, flat_grey, layouts, measuring, pixels};
-use photo::{BlackLevel, Capture, Counts, Layout, Picture, Size, WhiteLevel};
-use simulate::camera::filters;
-use simulate::{Exposure, Scene};
+use darkroot_photo::{BlackLevel, Capture, Counts, Layout, Picture, Size, WhiteLevel};
+use darkroot_simulate::camera::filters;
+use darkroot_simulate::{Exposure, Scene};
 
 const SIZE: Size = Size { width: 46, height: 32 };
 
@@ -120,7 +120,7 @@ fn each_channel_is_saturated_at_its_own_white_level() {
 
 #[test]
 fn the_block_of_black_levels_counts_from_the_first_stored_sample() {
-    let camera = simulate::Camera { masked: (1, 3), ..camera(filters("RGGB")) };
+    let camera = darkroot_simulate::Camera { masked: (1, 3), ..camera(filters("RGGB")) };
     let bare = exact(&Scene::gradient(SIZE), &camera, &Exposure::default());
     let black = BlackLevel {
         columns: 2,

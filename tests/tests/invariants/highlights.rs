@@ -1,11 +1,11 @@
 //! Clipped highlights are never pink, green or blue.
 
-use colour::difference::de2000;
-use colour::{Lab, RgbSpace, Spectrum};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{Lab, RgbSpace, Spectrum};
 use darkroot_tests::{camera, develop, exact, lab, layouts, output, pixels, profiles, saturated, with_light};
-use develop::{Bits, Highlights, Look, Recipe};
-use photo::{Capture, Layout, Size};
-use simulate::{Exposure, Scene};
+use darkroot_develop::{Bits, Highlights, Look, Recipe};
+use darkroot_photo::{Capture, Layout, Size};
+use darkroot_simulate::{Exposure, Scene};
 
 const SIZE: Size = Size { width: 160, height: 24 };
 const LOOKS: [Look; 3] = [Look::Neutral, Look::Vivid, Look::Flat];
@@ -19,7 +19,7 @@ fn ramp(layout: Layout, light: Spectrum) -> Capture {
 /// Colours of all pixels of the developed picture.
 fn colours(
     capture: &Capture,
-    profile: Option<&profile::Profile>,
+    profile: Option<&darkroot_profile::Profile>,
     look: Look,
     highlights: Highlights,
 ) -> Vec<Lab> {

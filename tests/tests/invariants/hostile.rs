@@ -1,13 +1,13 @@
 //! No file, however broken, panics (architecture, invariant 4): it is developed or it is an error in words.
 
-use colour::RgbSpace;
+use darkroot_colour::RgbSpace;
 use darkroot_tests::{output, real_files};
-use develop::{Balance, Bits, Crop, Exposure as Brightness, Highlights, Recipe};
-use photo::{BlackLevel, Capture, Layout, Rect, Size, WhiteLevel};
-use raw::{Decoder, Limits};
-use simulate::camera::{filters, x_trans};
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene, dng, nef};
+use darkroot_develop::{Balance, Bits, Crop, Exposure as Brightness, Highlights, Recipe};
+use darkroot_photo::{BlackLevel, Capture, Layout, Rect, Size, WhiteLevel};
+use darkroot_raw::{Decoder, Limits};
+use darkroot_simulate::camera::{filters, x_trans};
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene, dng, nef};
 
 const SIZE: Size = Size { width: 48, height: 32 };
 const SMALL: Limits = Limits { max_samples: 1 << 22, max_side: 1 << 14 };
@@ -49,11 +49,11 @@ fn survive(bytes: &[u8]) -> bool {
     keep_decoders_quiet();
     let mut decoded = false;
     for decoder in [Decoder::Flashraw, Decoder::Rawloader] {
-        match raw::decode(bytes, decoder, &SMALL) {
+        match darkroot_raw::decode(bytes, decoder, &SMALL) {
             Ok(capture) => {
                 decoded |= decoder == Decoder::Flashraw;
                 for recipe in recipes() {
-                    if let Ok(plan) = develop::plan(&capture, None, &recipe) {
+                    if let Ok(plan) = darkroot_develop::plan(&capture, None, &recipe) {
                         assert_eq!(plan.render(&capture).size, plan.size());
                     }
                 }
@@ -61,8 +61,8 @@ fn survive(bytes: &[u8]) -> bool {
             Err(error) => assert!(error.to_string().contains(' '), "{error}"),
         }
     }
-    assert_eq!(raw::decode(bytes, Decoder::Flashraw, &SMALL).is_ok(), decoded);
-    if let Ok(Some(preview)) = raw::preview(bytes) {
+    assert_eq!(darkroot_raw::decode(bytes, Decoder::Flashraw, &SMALL).is_ok(), decoded);
+    if let Ok(Some(preview)) = darkroot_raw::preview(bytes) {
         assert!(preview.jpeg.len() <= bytes.len());
     }
     decoded
@@ -108,7 +108,7 @@ fn a_file_cut_off_anywhere_is_developed_or_refused() {
         for length in (0..bytes.len()).step_by(bytes.len() / 60 + 1) {
             survive(&bytes[..length]);
         }
-        let error = raw::decode(&bytes[..bytes.len() / 2], Decoder::Flashraw, &SMALL).unwrap_err();
+        let error = darkroot_raw::decode(&bytes[..bytes.len() / 2], Decoder::Flashraw, &SMALL).unwrap_err();
         assert!(!error.to_string().is_empty(), "{name}");
     }
 }
@@ -150,14 +150,14 @@ fn headers_that_contradict_each_other_are_developed_or_refused() {
         Capture { pixel_aspect: 1e9, ..sound.clone() },
         Capture { baseline_exposure: 2e9, ..sound.clone() },
         Capture { analog_balance: [0.0; 3], ..sound.clone() },
-        Capture { as_shot: Some(photo::AsShot::Neutral([0.0, 1.0, 0.0])), ..sound.clone() },
-        Capture { as_shot: Some(photo::AsShot::Neutral([1e-9, 1.0, 1e9])), ..sound.clone() },
-        Capture { as_shot: Some(photo::AsShot::White(colour::Xy::new(0.01, 0.98))), ..sound.clone() },
+        Capture { as_shot: Some(darkroot_photo::AsShot::Neutral([0.0, 1.0, 0.0])), ..sound.clone() },
+        Capture { as_shot: Some(darkroot_photo::AsShot::Neutral([1e-9, 1.0, 1e9])), ..sound.clone() },
+        Capture { as_shot: Some(darkroot_photo::AsShot::White(darkroot_colour::Xy::new(0.01, 0.98))), ..sound.clone() },
         Capture {
             calibrations: sound
                 .calibrations
                 .iter()
-                .map(|c| photo::Calibration { color_matrix: colour::Matrix3::zeros(), ..c.clone() })
+                .map(|c| darkroot_photo::Calibration { color_matrix: darkroot_colour::Matrix3::zeros(), ..c.clone() })
                 .collect(),
             ..sound.clone()
         },
@@ -175,7 +175,7 @@ fn a_file_that_asks_for_more_than_the_limit_is_refused_in_words() {
     let tight = Limits { max_samples: 100, max_side: 65_535 };
     let narrow = Limits { max_samples: u64::MAX, max_side: 10 };
     for limits in [tight, narrow] {
-        let message = raw::decode(&bytes, Decoder::Flashraw, &limits).unwrap_err().to_string();
+        let message = darkroot_raw::decode(&bytes, Decoder::Flashraw, &limits).unwrap_err().to_string();
         assert!(message.contains("too large") && message.contains("limit"), "{message}");
     }
 }

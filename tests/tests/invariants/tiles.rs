@@ -1,12 +1,12 @@
 //! The picture does not depend on the number of threads or on the tiles (architecture, invariant 3).
 
-use colour::RgbSpace;
+use darkroot_colour::RgbSpace;
 use darkroot_tests::{bent_profile, camera, layouts, output};
-use develop::{Balance, Bits, Crop, Demosaic, Exposure as Brightness, Highlights, Look, Recipe};
-use photo::{Capture, Layout, Orientation, Picture, Size};
-use profile::Profile;
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene};
+use darkroot_develop::{Balance, Bits, Crop, Demosaic, Exposure as Brightness, Highlights, Look, Recipe};
+use darkroot_photo::{Capture, Layout, Orientation, Picture, Size};
+use darkroot_profile::Profile;
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene};
 
 /// Odd, so that no tile and no filter array fits.
 const SIZE: Size = Size { width: 53, height: 37 };
@@ -32,7 +32,7 @@ fn check(
     let in_pool = |threads: usize, columns: usize, rows: usize| -> Picture {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            develop::plan(capture, profile, recipe).unwrap().render_in_tiles(capture, columns, rows)
+            darkroot_develop::plan(capture, profile, recipe).unwrap().render_in_tiles(capture, columns, rows)
         })
     };
     let whole = in_pool(1, SIZE.width, SIZE.width);
@@ -41,7 +41,7 @@ fn check(
         let cut = in_pool(threads, columns, rows);
         assert!(cut == whole, "{what}: {columns} x {rows} with {threads} threads");
     }
-    let usual = develop::plan(capture, profile, recipe).unwrap().render(capture);
+    let usual = darkroot_develop::plan(capture, profile, recipe).unwrap().render(capture);
     assert!(usual == whole, "{what}: rendered as always");
 }
 
@@ -114,6 +114,6 @@ fn what_is_chosen_from_the_whole_picture_does_not_depend_on_threads_or_tiles() {
 #[test]
 fn tiles_larger_than_any_picture_are_the_whole_picture() {
     let capture = capture(layouts().remove(0).1, Orientation::Upright);
-    let plan = develop::plan(&capture, None, &Recipe::default()).unwrap();
+    let plan = darkroot_develop::plan(&capture, None, &Recipe::default()).unwrap();
     assert!(plan.render_in_tiles(&capture, usize::MAX, usize::MAX) == plan.render(&capture));
 }

@@ -1,14 +1,14 @@
 //! Pictures of the still life against what it is made of: colours of the chart, through files and decoders.
 
-use colour::difference::de2000;
-use colour::{RgbSpace, Spectrum, Vector3, Xyz, white};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{RgbSpace, Spectrum, Vector3, Xyz, white};
 use darkroot_tests::{camera, develop, exact, lab, layouts, mean, measuring, root};
-use develop::{Bits, CameraMatrix, Output, OutputSpace, Recipe};
-use photo::{Capture, Orientation, Rect, Size};
-use raw::{Decoder, Limits};
-use simulate::camera::filters;
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene, chart, dng, nef};
+use darkroot_develop::{Bits, CameraMatrix, Output, OutputSpace, Recipe};
+use darkroot_photo::{Capture, Orientation, Rect, Size};
+use darkroot_raw::{Decoder, Limits};
+use darkroot_simulate::camera::filters;
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene, chart, dng, nef};
 
 const SIZE: Size = Size { width: 360, height: 240 };
 
@@ -83,7 +83,7 @@ fn day() -> Spectrum {
 }
 
 fn decoded(bytes: &[u8]) -> Capture {
-    raw::decode(bytes, Decoder::Flashraw, &Limits::default()).unwrap()
+    darkroot_raw::decode(bytes, Decoder::Flashraw, &Limits::default()).unwrap()
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn both_decoders_give_the_same_picture() {
     let scene = Scene::still_life(Size { width: 300, height: 200 });
     let bytes =
         dng::write(&expose(&scene, &Camera::simulated_one(), &Exposure::default()), dng::Storage::JpegStrip);
-    let capture = |decoder| raw::decode(&bytes, decoder, &Limits::default()).unwrap();
+    let capture = |decoder| darkroot_raw::decode(&bytes, decoder, &Limits::default()).unwrap();
     let (one, two) = (capture(Decoder::Flashraw), capture(Decoder::Rawloader));
     assert!(one.counts == two.counts);
     assert!(develop(&one, None, &Recipe::default()) == develop(&two, None, &Recipe::default()));

@@ -4,7 +4,7 @@
 //! lightness, both beside a plane of shade over the chart. White balance and exposure are constants, a gamma is a scale,
 //! the overlap of filters a mixture; how much stays unexplained tells a chart from anything else.
 
-use colour::{Lab, RgbSpace, Vector3, white};
+use darkroot_colour::{Lab, RgbSpace, Vector3, white};
 use nalgebra::DMatrix;
 
 /// Constant, across, down; two ratios of channels; lightness.

@@ -1,7 +1,7 @@
 //! Argyll's chart recognition files (.cht): where the boxes are and about which colours they have
 //! (Argyll CMS, "File Formats", Chart Recognition).
 
-use colour::{Lab, Xyz, white};
+use darkroot_colour::{Lab, Xyz, white};
 
 use super::{Hinge, Layout, LayoutError, PatchPlace};
 

@@ -1,6 +1,6 @@
 //! CxF 3 (ISO 17972): colours as XML.
 
-use colour::{Lab, Xyz};
+use darkroot_colour::{Lab, Xyz};
 use roxmltree::{Document, Node};
 
 use super::ReferenceColour;

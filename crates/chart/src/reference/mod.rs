@@ -4,8 +4,8 @@ mod cgats;
 mod cxf;
 mod table;
 
-use colour::measured::{Measured, SpectrumError};
-use colour::{Lab, Spectrum, Xyz, white};
+use darkroot_colour::measured::{Measured, SpectrumError};
+use darkroot_colour::{Lab, Spectrum, Xyz, white};
 
 /// The colours of one chart, patch by patch.
 #[derive(Debug, Clone, PartialEq)]

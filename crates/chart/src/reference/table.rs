@@ -1,6 +1,6 @@
 //! A table of patches, whatever file it came from: which columns hold the colours.
 
-use colour::{Lab, Xyz};
+use darkroot_colour::{Lab, Xyz};
 
 use super::{Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
 

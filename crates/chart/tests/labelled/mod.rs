@@ -7,8 +7,8 @@ use std::error::Error;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use chart::geometry::{area, contains};
-use chart::{Found, Homography, Picture, Quad};
+use darkroot_chart::geometry::{area, contains};
+use darkroot_chart::{Found, Homography, Picture, Quad};
 use serde::Deserialize;
 
 /// A photograph and its labels.
@@ -49,7 +49,7 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<Photo>, Box<dyn Error>> {
 pub(crate) fn open(path: &Path) -> Result<Picture, Box<dyn Error>> {
     let rgb = image::open(path)?.to_rgb8();
     let linear: Vec<f32> =
-        (0..256).map(|v| colour::TransferCurve::Srgb.decode(f64::from(v) / 255.0) as f32).collect();
+        (0..256).map(|v| darkroot_colour::TransferCurve::Srgb.decode(f64::from(v) / 255.0) as f32).collect();
     let plane = |c: usize| rgb.pixels().map(|p| linear[usize::from(p.0[c])]).collect();
     Ok(Picture {
         width: rgb.width() as usize,

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what cannot be set up shall fail")]
 
-use chart::{Homography, Layout, Picture};
+use darkroot_chart::{Homography, Layout, Picture};
 
 use super::{Random, Shot, hash};
 

@@ -4,8 +4,8 @@
 
 pub(crate) mod clutter;
 
-use chart::{Homography, Layout, Picture, Quad};
-use colour::{RgbSpace, Vector3, white};
+use darkroot_chart::{Homography, Layout, Picture, Quad};
+use darkroot_colour::{RgbSpace, Vector3, white};
 
 /// Random numbers (SplitMix64: Steele, Lea and Flood, OOPSLA 2014), the same everywhere.
 pub(crate) struct Random(pub(crate) u64);
@@ -178,7 +178,7 @@ pub(crate) fn extent(layout: &Layout) -> [f64; 2] {
 /// Light of the patches in Rec. 2020.
 pub(crate) fn colours(layout: &Layout) -> Vec<[f64; 3]> {
     let matrix = RgbSpace::REC2020.from_xyz_under(white::D50);
-    let rgb = |lab: colour::Lab| {
+    let rgb = |lab: darkroot_colour::Lab| {
         let xyz = lab.xyz(white::D50);
         let rgb = matrix * Vector3::new(xyz.x, xyz.y, xyz.z);
         [0, 1, 2].map(|c| rgb[c].max(0.001))

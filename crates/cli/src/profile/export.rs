@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
-use colour::{RgbSpace, Xyz};
-use develop::OutputSpace;
-use profile::export::clf::Clf;
-use profile::export::cube::{self, Shaper};
-use profile::export::dcp::{Dcp, WithNeutral};
-use profile::export::icc::{self, Icc};
-use profile::export::{clf, deviation};
-use profile::{Calibration, Profile};
+use darkroot_colour::{RgbSpace, Xyz};
+use darkroot_develop::OutputSpace;
+use darkroot_profile::export::clf::Clf;
+use darkroot_profile::export::cube::{self, Shaper};
+use darkroot_profile::export::dcp::{Dcp, WithNeutral};
+use darkroot_profile::export::icc::{self, Icc};
+use darkroot_profile::export::{clf, deviation};
+use darkroot_profile::{Calibration, Profile};
 
 use super::lights;
 use crate::{Common, Outcome};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use profile::{Kind, ProfileCamera};
+use darkroot_profile::{Kind, ProfileCamera};
 
 use crate::{Common, Outcome};
 

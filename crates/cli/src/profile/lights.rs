@@ -1,8 +1,8 @@
 //! The calibration of a profile that a person means.
 
 use anyhow::{Result, bail};
-use colour::temperature::{daylight_xy, planckian_xy};
-use profile::{Calibration, Light, Profile};
+use darkroot_colour::temperature::{daylight_xy, planckian_xy};
+use darkroot_profile::{Calibration, Light, Profile};
 
 /// The calibration for a light by its name or, between lights, by a temperature; the only one where none is named.
 pub(super) fn choose(profile: &Profile, light: Option<&str>) -> Result<Calibration> {

@@ -4,7 +4,7 @@ use std::io::Write as _;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use profile::lint::{Severity, check};
+use darkroot_profile::lint::{Severity, check};
 use serde_json::json;
 
 use crate::Outcome;

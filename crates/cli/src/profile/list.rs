@@ -4,7 +4,7 @@ use std::io::Write as _;
 
 use anyhow::Result;
 use clap::Args;
-use profile::Calibration;
+use darkroot_profile::Calibration;
 use serde_json::json;
 
 use crate::Outcome;

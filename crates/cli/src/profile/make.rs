@@ -7,7 +7,7 @@ use clap::Args;
 use darkroot::make_profile::MadeLight;
 use darkroot::shot::{Gate, ShotOptions, Verdict};
 use darkroot::{ChartRequest, Error, Settings, charts, light, make_profile, report};
-use profile::Kind;
+use darkroot_profile::Kind;
 use serde_json::json;
 
 use crate::{Common, Outcome};
@@ -222,7 +222,7 @@ fn say_light(light: &MadeLight) {
         match &compared.result {
             Ok(f) => {
                 let pair =
-                    |e: Option<profile::Errors>| match e.map(|e| e.de2000).filter(|s| s.max.is_finite()) {
+                    |e: Option<darkroot_profile::Errors>| match e.map(|e| e.de2000).filter(|s| s.max.is_finite()) {
                         Some(s) => format!("{:5.2} / {:5.2}", s.mean, s.max),
                         None => "not determined".to_owned(),
                     };
@@ -239,7 +239,7 @@ fn say_light(light: &MadeLight) {
 
 /// Everything about one light, for machines.
 pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
-    let summary = |e: Option<profile::Errors>| {
+    let summary = |e: Option<darkroot_profile::Errors>| {
         e.map(|e| {
             let s = e.de2000;
             json!({ "mean": s.mean, "median": s.median, "p95": s.p95, "max": s.max })

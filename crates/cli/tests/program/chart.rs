@@ -1,7 +1,7 @@
 //! From shots of a chart to a profile, and a new shot against it.
 
-use colour::Spectrum;
-use colour::illuminant::Illuminant;
+use darkroot_colour::Spectrum;
+use darkroot_colour::illuminant::Illuminant;
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn corners() -> String {
 
 /// A shot of the chart by the simulated camera.
 fn shot(exposure: &Exposure) -> Vec<u8> {
-    let scene = Scene::chart(SIZE, CORNERS, &simulate::chart::reflectances(), 6, 0.15);
+    let scene = Scene::chart(SIZE, CORNERS, &darkroot_simulate::chart::reflectances(), 6, 0.15);
     dng::write(&expose(&scene, &Camera::simulated_one(), exposure), dng::Storage::Uncompressed)
 }
 
@@ -80,7 +80,7 @@ fn a_profile_from_a_shot_is_nearly_one_from_true_values() {
     // What the camera makes of each patch without noise, balanced by the true white.
     let (camera, light) = (Camera::simulated_one(), light("D50"));
     let white = camera.response(&Spectrum::constant(1.0), &light);
-    for (patch, reflectance) in patches.iter().zip(simulate::chart::reflectances()) {
+    for (patch, reflectance) in patches.iter().zip(darkroot_simulate::chart::reflectances()) {
         let truth = camera.response(&reflectance, &light);
         for c in 0..3 {
             let found = patch["rgb"][c].as_f64().unwrap();
@@ -107,7 +107,7 @@ fn found(desk: &Desk, file: &str) -> Vec<serde_json::Value> {
 fn a_chart_is_found_whichever_way_it_is_held() {
     let [a, b, c, d] = CORNERS;
     for (turned, corners) in [[a, b, c, d], [c, d, a, b]].into_iter().enumerate() {
-        let scene = Scene::chart(SIZE, corners, &simulate::chart::reflectances(), 6, 0.15);
+        let scene = Scene::chart(SIZE, corners, &darkroot_simulate::chart::reflectances(), 6, 0.15);
         let desk = Desk::new();
         let capture = expose(&scene, &Camera::simulated_one(), &daylight());
         desk.put("chart.dng", dng::write(&capture, dng::Storage::Uncompressed));
@@ -138,7 +138,7 @@ fn no_chart_is_invented_and_a_mirrored_one_is_refused() {
     let plain = expose(&Scene::gradient(SIZE), &Camera::simulated_one(), &daylight());
     desk.put("plain.dng", dng::write(&plain, dng::Storage::Uncompressed));
     let [a, b, c, d] = CORNERS;
-    let mirrored = Scene::chart(SIZE, [b, a, d, c], &simulate::chart::reflectances(), 6, 0.15);
+    let mirrored = Scene::chart(SIZE, [b, a, d, c], &darkroot_simulate::chart::reflectances(), 6, 0.15);
     let mirrored = expose(&mirrored, &Camera::simulated_one(), &daylight());
     desk.put("mirrored.dng", dng::write(&mirrored, dng::Storage::Uncompressed));
     let run = desk.run(&["chart", "plain.dng", "mirrored.dng"]);
@@ -306,10 +306,10 @@ fn the_report_tells_every_model_at_every_exposure() {
 
 /// A shot by a sensor that loses `loss` of the light at saturation, and half as much at half of it.
 fn bent_shot(exposure: &Exposure, loss: f64) -> Vec<u8> {
-    let scene = Scene::chart(SIZE, CORNERS, &simulate::chart::reflectances(), 6, 0.15);
+    let scene = Scene::chart(SIZE, CORNERS, &darkroot_simulate::chart::reflectances(), 6, 0.15);
     let camera = Camera::simulated_one();
     let mut capture = expose(&scene, &camera, exposure);
-    let photo::Counts::U16(mosaic) = &mut capture.counts else { panic!("16 bits") };
+    let darkroot_photo::Counts::U16(mosaic) = &mut capture.counts else { panic!("16 bits") };
     let black = f64::from(camera.black.at(0, 0, 0));
     for count in &mut mosaic.samples {
         let light = (f64::from(*count) - black) / (f64::from(camera.white) - black);
@@ -366,7 +366,7 @@ fn shots_at_one_exposure_are_averaged_only_when_asked() {
     let white = camera.response(&Spectrum::constant(1.0), &light);
     let off = |found: &serde_json::Value| {
         let patches = found["patches"].as_array().unwrap();
-        let all = patches.iter().zip(simulate::chart::reflectances()).flat_map(|(patch, r)| {
+        let all = patches.iter().zip(darkroot_simulate::chart::reflectances()).flat_map(|(patch, r)| {
             let truth = camera.response(&r, &light);
             [0, 1, 2].map(|c| (patch["rgb"][c].as_f64().unwrap() * white[c] / truth[c] - 1.0).powi(2))
         });

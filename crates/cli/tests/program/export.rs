@@ -1,9 +1,9 @@
 //! `darkroot profile export`: each file is what was asked for, and what is missing is said.
 
-use colour::{Vector3, white};
-use profile::export::clf::Clf;
-use profile::export::dcp::Dcp;
-use profile::export::icc::Icc;
+use darkroot_colour::{Vector3, white};
+use darkroot_profile::export::clf::Clf;
+use darkroot_profile::export::dcp::Dcp;
+use darkroot_profile::export::icc::Icc;
 
 use super::*;
 
@@ -74,7 +74,7 @@ fn what_is_in_the_files_is_the_camera_s_colour() {
     desk.put("p.toml", SIMULATED);
     let rgb = [0.2, 0.4, 0.1];
     let truth = [0.7 * 0.2 + 0.16 * 0.4 + 0.010_42, 0.056 + 0.32 - 0.008, 0.004 - 0.04 + 0.090_49];
-    let near = |found: colour::Xyz, what: &str| {
+    let near = |found: darkroot_colour::Xyz, what: &str| {
         let off = Vector3::from(found) - Vector3::from(truth);
         assert!(off.amax() < 1e-4, "{what}: {found:?}");
     };
@@ -86,7 +86,7 @@ fn what_is_in_the_files_is_the_camera_s_colour() {
     export(&desk, &["p.toml", "--to", "clf", "--space", "rec2020-linear", "--grid", "40", "-o", "a.clf"]);
     let text = String::from_utf8(desk.read("a.clf")).unwrap();
     assert!(text.contains("dim=\"40 40 40 3\"") && text.contains("Rec. 2020, linear"));
-    near(Clf::read(&text).unwrap().xyz(&colour::RgbSpace::REC2020, rgb), "clf");
+    near(Clf::read(&text).unwrap().xyz(&darkroot_colour::RgbSpace::REC2020, rgb), "clf");
     export(&desk, &["p.toml", "--to", "cube", "--shaper", "none", "--space", "srgb", "-o", "a.cube"]);
     let text = String::from_utf8(desk.read("a.cube")).unwrap();
     assert!(text.contains("# in:  balanced camera RGB, linear") && text.contains("# out: sRGB, coded"));
@@ -101,8 +101,8 @@ fn a_raw_file_of_the_camera_gives_the_neutral() {
     export(&desk, &["p.toml", "--to", "dcp", "--for", "a.dng", "-o", "a.dcp"]);
     let read = Dcp::read(&desk.read("a.dcp")).unwrap();
     assert_eq!((read.camera.as_str(), read.lights.len()), ("Darkroot Simulated One", 1));
-    let d65 = colour::illuminant::Illuminant::by_name("D65").unwrap().spectrum();
-    let real = Vector3::from(Camera::simulated_one().response(&colour::Spectrum::constant(1.0), &d65));
+    let d65 = darkroot_colour::illuminant::Illuminant::by_name("D65").unwrap().spectrum();
+    let real = Vector3::from(Camera::simulated_one().response(&darkroot_colour::Spectrum::constant(1.0), &d65));
     let found = read.lights[0].color_matrix * Vector3::from(white::D65_XY.xyz());
     assert!((found / found.max() - real / real.max()).amax() < 0.03, "{found} is not {real}");
 

@@ -23,9 +23,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use photo::Size;
-use simulate::expose::expose;
-use simulate::{Camera, Exposure, Scene, dng, nef};
+use darkroot_photo::Size;
+use darkroot_simulate::expose::expose;
+use darkroot_simulate::{Camera, Exposure, Scene, dng, nef};
 use tempfile::TempDir;
 
 /// Size of the small raw files; the simulated camera leaves four pixels out on each side.

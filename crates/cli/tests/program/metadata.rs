@@ -1,8 +1,8 @@
 //! What the camera wrote about the shot is in the picture, and what no longer holds is not.
 
 use exif::{Exif, In, Reader, Tag, Value};
-use photo::Orientation;
-use photo::metadata::{Directory, Value as Field, tag};
+use darkroot_photo::Orientation;
+use darkroot_photo::metadata::{Directory, Value as Field, tag};
 
 use super::*;
 
@@ -30,8 +30,8 @@ fn number(exif: &Exif, tag: Tag) -> f64 {
 }
 
 /// A camera held upright, with a photographer whose name is not ASCII.
-fn turned() -> simulate::Exposure {
-    let mut metadata = simulate::expose::metadata();
+fn turned() -> darkroot_simulate::Exposure {
+    let mut metadata = darkroot_simulate::expose::metadata();
     let text = |s: &str| Field::Text(s.to_owned());
     metadata.set(Directory::Image, tag::ARTIST, text("Zoë Müller"));
     metadata.set(Directory::Image, tag::COPYRIGHT, text("(c) 2026 Zoë Müller"));

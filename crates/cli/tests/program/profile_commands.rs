@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::process::Stdio;
 
-use colour::Spectrum;
+use darkroot_colour::Spectrum;
 
 use super::*;
 
@@ -23,8 +23,8 @@ fn desk() -> Desk {
     let desk = Desk::new();
     let camera = Camera::simulated_one().sensitivities;
     desk.put("camera.csv", csv(["red", "green", "blue"].into_iter().zip(&camera)));
-    let chart = simulate::chart::reflectances();
-    desk.put("chart.csv", csv(simulate::chart::PATCHES.iter().map(|(name, _)| *name).zip(&chart)));
+    let chart = darkroot_simulate::chart::reflectances();
+    desk.put("chart.csv", csv(darkroot_simulate::chart::PATCHES.iter().map(|(name, _)| *name).zip(&chart)));
     desk
 }
 
@@ -141,27 +141,27 @@ fn colours_through_a_profile_from_spectra_are_nearer_than_by_the_matrix() {
     let desk = desk();
     make(&desk, &["--light", "D50", "--model", "spectral", "-o", "p.toml"]);
     // What the camera makes of the chart, and what the chart is.
-    let light = colour::illuminant::Illuminant::by_name("D50").unwrap().spectrum();
+    let light = darkroot_colour::illuminant::Illuminant::by_name("D50").unwrap().spectrum();
     let camera = Camera::simulated_one();
     let white = camera.response(&Spectrum::constant(1.0), &light);
     let mut input = "r,g,b\n".to_owned();
     let mut truth = Vec::new();
-    for patch in simulate::chart::reflectances() {
+    for patch in darkroot_simulate::chart::reflectances() {
         let rgb = camera.response(&patch, &light);
         input += &format!("{},{},{}\n", rgb[0] / white[0], rgb[1] / white[1], rgb[2] / white[2]);
         truth.push(patch.reflected_xyz(&light));
     }
     let run = apply(&desk, &["p.toml"], &input);
     let matrix = camera.calibration(&light, 5003.0).forward_matrix.unwrap();
-    let d50 = colour::white::D50;
+    let d50 = darkroot_colour::white::D50;
     let error = |colours: Vec<[f64; 3]>| {
         let pairs = colours.into_iter().zip(&truth);
         let sum: f64 =
-            pairs.map(|(c, t)| colour::difference::de2000(colour::Xyz::from(c).lab(d50), t.lab(d50))).sum();
+            pairs.map(|(c, t)| darkroot_colour::difference::de2000(darkroot_colour::Xyz::from(c).lab(d50), t.lab(d50))).sum();
         sum / 24.0
     };
     let by_matrix: Vec<[f64; 3]> =
-        rows(&input).into_iter().map(|rgb| (matrix * colour::Vector3::from(rgb)).into()).collect();
+        rows(&input).into_iter().map(|rgb| (matrix * darkroot_colour::Vector3::from(rgb)).into()).collect();
     let (own, other) = (error(rows(&run.out)), error(by_matrix));
     assert!(own < 0.6 * other, "{own} against {other}");
 }

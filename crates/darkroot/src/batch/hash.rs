@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use develop::OutputSpace;
+use darkroot_develop::OutputSpace;
 use sha2::{Digest, Sha256};
 
 use crate::{Engine, Error, ProfileChoice, ProfileStore, Settings, store};
@@ -38,13 +38,13 @@ pub(crate) fn file(path: &Path) -> io::Result<String> {
 /// Of the profile that gives a camera's colours under these settings; empty where none does.
 pub(crate) fn profile(
     settings: &Settings,
-    camera: &photo::Camera,
+    camera: &darkroot_photo::Camera,
     store: &ProfileStore,
 ) -> Result<String, Error> {
     if settings.space == Some(OutputSpace::Camera) || settings.engine == Engine::Imagepipe {
         return Ok(String::new());
     }
-    let of = |profile: &::profile::Profile| text(&::profile::file::format(profile));
+    let of = |profile: &darkroot_profile::Profile| text(&darkroot_profile::file::format(profile));
     match &settings.profile {
         ProfileChoice::Matrix => Ok(String::new()),
         ProfileChoice::Automatic => Ok(store.find(camera).map(|f| of(&f.profile)).unwrap_or_default()),

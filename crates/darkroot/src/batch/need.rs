@@ -1,9 +1,9 @@
 //! How much memory a file takes.
 
-use encode::Format;
+use darkroot_encode::Format;
 
 use crate::settings::Settings;
-use develop::Bits;
+use darkroot_develop::Bits;
 
 /// What a worker holds besides pictures: program, profiles, stacks, the tiles of one thread.
 pub(crate) const WORKER: u64 = 40 << 20;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use encode::Format;
+use darkroot_encode::Format;
 use rayon::prelude::*;
 
 use super::crew::{Crew, CrewOptions};

@@ -15,7 +15,7 @@ pub struct Identity {
     pub sha256: String,
 }
 
-/// The camera of a file by all its names, as [`photo::Camera`].
+/// The camera of a file by all its names, as [`darkroot_photo::Camera`].
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CameraNames {
     /// As written in the file.
@@ -28,8 +28,8 @@ pub struct CameraNames {
     pub common_model: String,
 }
 
-impl From<&photo::Camera> for CameraNames {
-    fn from(c: &photo::Camera) -> Self {
+impl From<&darkroot_photo::Camera> for CameraNames {
+    fn from(c: &darkroot_photo::Camera) -> Self {
         Self {
             make: c.make.clone(),
             model: c.model.clone(),
@@ -39,7 +39,7 @@ impl From<&photo::Camera> for CameraNames {
     }
 }
 
-impl From<&CameraNames> for photo::Camera {
+impl From<&CameraNames> for darkroot_photo::Camera {
     fn from(c: &CameraNames) -> Self {
         Self {
             make: c.make.clone(),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use develop::Balance;
+use darkroot_develop::Balance;
 use serde::{Deserialize, Serialize};
 
 use super::crew::{Crew, Moment, Next, Work};
@@ -321,11 +321,11 @@ fn request(chart: &ChartShot, shot: &ChartFound<'_>) -> String {
 /// Whether the profile's file is what it was.
 fn is_there(colour: &SessionColour) -> bool {
     store::read(&colour.profile)
-        .is_ok_and(|p| super::hash::text(&::profile::file::format(&p)) == colour.sha256)
+        .is_ok_and(|p| super::hash::text(&darkroot_profile::file::format(&p)) == colour.sha256)
 }
 
 fn words(which: &str, colour: &SessionColour) -> String {
-    let camera = photo::Camera::from(&colour.camera).name();
+    let camera = darkroot_photo::Camera::from(&colour.camera).name();
     format!(
         "{which}: white balance and profile for {camera} from the chart in {} (mean dE2000 of left-out patches {:.2})",
         colour.chart, colour.left_out
@@ -382,7 +382,7 @@ pub(super) fn calibrate(
         camera,
         chart: String::new(),
         profile: profile.to_owned(),
-        sha256: super::hash::text(&::profile::file::format(&made.profile)),
+        sha256: super::hash::text(&darkroot_profile::file::format(&made.profile)),
         multipliers: white.map(|v| white[1] / v),
         left_out: first
             .calibrated

@@ -1,8 +1,8 @@
 //! Small pictures for contact sheets.
 
-use colour::RgbSpace;
-use encode::{ChromaSubsampling, Format, Options};
-use photo::{Metadata, Picture, PictureSpace, Samples, Size};
+use darkroot_colour::RgbSpace;
+use darkroot_encode::{ChromaSubsampling, Format, Options};
+use darkroot_photo::{Metadata, Picture, PictureSpace, Samples, Size};
 
 /// Longest side in pixels.
 const LONGEST: usize = 240;
@@ -17,7 +17,7 @@ pub(super) fn of_picture(picture: &Picture) -> Option<String> {
         PictureSpace::Rgb(space) => space,
         PictureSpace::Camera => RgbSpace::SRGB.linear(),
     };
-    let white = colour::white::D65;
+    let white = darkroot_colour::white::D65;
     let to_srgb = RgbSpace::SRGB.from_xyz_under(white) * space.to_xyz_under(white);
     let value = |i: usize| match &picture.samples {
         Samples::U8(s) => f64::from(s[i]) / 255.0,
@@ -27,7 +27,7 @@ pub(super) fn of_picture(picture: &Picture) -> Option<String> {
     let pixel = |x: usize, y: usize| {
         let at = 3 * (y * picture.size.width + x);
         let linear = [0, 1, 2].map(|c| space.curve.decode(value(at + c).clamp(0.0, 1.0)));
-        (to_srgb * colour::Vector3::from(linear)).into()
+        (to_srgb * darkroot_colour::Vector3::from(linear)).into()
     };
     small(picture.size, pixel)
 }
@@ -74,6 +74,6 @@ fn small(size: Size, pixel: impl Fn(usize, usize) -> [f64; 3]) -> Option<String>
         Picture { size: small, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
     let options = Options { quality: QUALITY, subsampling: ChromaSubsampling::S420, ..Options::default() };
     let mut out = std::io::Cursor::new(Vec::new());
-    encode::write(&picture, Format::Jpeg, &options, &Metadata::default(), &mut out).ok()?;
+    darkroot_encode::write(&picture, Format::Jpeg, &options, &Metadata::default(), &mut out).ok()?;
     Some(crate::report::base64(&out.into_inner()))
 }

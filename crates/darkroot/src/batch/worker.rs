@@ -140,7 +140,7 @@ fn needed(task: &Task, bytes: &[u8]) -> Result<u64, Trouble> {
         let header = header(path, bytes)?;
         let size = header.counts.size();
         let pixels = size.width as u64 * size.height as u64;
-        let float = matches!(header.counts, photo::Counts::F32(_));
+        let float = matches!(header.counts, darkroot_photo::Counts::F32(_));
         Ok::<_, Trouble>((pixels * header.counts.layout().planes() as u64, float, pixels))
     };
     Ok(match task {
@@ -160,8 +160,8 @@ fn needed(task: &Task, bytes: &[u8]) -> Result<u64, Trouble> {
 }
 
 /// What stands at the head of a raw file.
-fn header(path: &Path, bytes: &[u8]) -> Result<photo::Capture, Trouble> {
-    raw::header(bytes, &raw::Limits::default())
+fn header(path: &Path, bytes: &[u8]) -> Result<darkroot_photo::Capture, Trouble> {
+    darkroot_raw::header(bytes, &darkroot_raw::Limits::default())
         .map_err(|source| file(&Error::Raw { path: path.to_owned(), source }))
 }
 
@@ -230,7 +230,7 @@ fn develop(task: &Develop, read: Input, store: &ProfileStore) -> Result<Develope
     let Input { bytes, identity } = read;
     let job = Job { input: task.input.clone(), output: task.output.clone() };
     let mut small = None;
-    let mut seen = |_: &photo::Camera, picture: &photo::Picture| {
+    let mut seen = |_: &darkroot_photo::Camera, picture: &darkroot_photo::Picture| {
         if task.thumbnail {
             small = thumbnail::of_picture(picture);
         }

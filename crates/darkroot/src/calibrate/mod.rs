@@ -2,13 +2,13 @@
 
 mod patches;
 
-use colour::adaptation::bradford;
-use colour::{Spectrum, Vector3, Xyz, white};
-use profile::fit::population::Population;
-use profile::fit::prior::Prior;
-use profile::fit::virtual_set::VirtualSet;
-use profile::fit::{self, FitError, Knowledge, Samples, spectral, white_through};
-use profile::{Calibration, Errors, Figures, Kind, Model, Order};
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::{Spectrum, Vector3, Xyz, white};
+use darkroot_profile::fit::population::Population;
+use darkroot_profile::fit::prior::Prior;
+use darkroot_profile::fit::virtual_set::VirtualSet;
+use darkroot_profile::fit::{self, FitError, Knowledge, Samples, spectral, white_through};
+use darkroot_profile::{Calibration, Errors, Figures, Kind, Model, Order};
 
 pub(crate) use patches::is_clipped;
 pub use patches::{Judged, MeasuredPatch};
@@ -301,21 +301,21 @@ fn best(compared: &[(Compared, Option<fit::Fit>)]) -> Option<Kind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use chart::ReferenceColour;
-    use colour::illuminant::Illuminant;
-    use simulate::Camera;
+    use darkroot_chart::ReferenceColour;
+    use darkroot_colour::illuminant::Illuminant;
+    use darkroot_simulate::Camera;
 
     fn patches(camera: &Camera, light: &Spectrum, gain: f64) -> Vec<MeasuredPatch> {
-        let reflectances = simulate::chart::reflectances();
+        let reflectances = darkroot_simulate::chart::reflectances();
         let one = |(name, s): (&str, &Spectrum)| MeasuredPatch {
             name: name.to_owned(),
             rgb: camera.response(s, light).map(|v| v * gain),
             uncertainty: [1e-4; 3],
             clipped: 0.0,
-            reference: ReferenceColour::Lab(simulate::reflectance::lab_of(s)),
+            reference: ReferenceColour::Lab(darkroot_simulate::reflectance::lab_of(s)),
             excluded: None,
         };
-        simulate::chart::PATCHES.iter().map(|(n, _)| *n).zip(&reflectances).map(one).collect()
+        darkroot_simulate::chart::PATCHES.iter().map(|(n, _)| *n).zip(&reflectances).map(one).collect()
     }
 
     fn d50() -> NamedLight {

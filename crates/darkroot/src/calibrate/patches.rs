@@ -1,10 +1,10 @@
 //! Patches as they were measured and as they are judged.
 
-use chart::ReferenceColour;
-use colour::adaptation::bradford;
-use colour::difference::de2000;
-use colour::{Vector3, Xyz, white};
-use profile::Patch;
+use darkroot_chart::ReferenceColour;
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{Vector3, Xyz, white};
+use darkroot_profile::Patch;
 
 use crate::light::NamedLight;
 
@@ -98,7 +98,7 @@ impl Judged {
 /// How reference colours become XYZ under the light.
 pub(super) struct Reference<'a> {
     light: &'a NamedLight,
-    from_d50: colour::Matrix3,
+    from_d50: darkroot_colour::Matrix3,
 }
 
 impl<'a> Reference<'a> {

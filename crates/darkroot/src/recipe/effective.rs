@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use encode::Format;
+use darkroot_encode::Format;
 
 use super::{Key, Layer, Origin, RecipeError, text};
 use crate::naming::{NamingError, Target};

@@ -1,8 +1,8 @@
 //! What the texts of settings mean, for the command line and for files alike.
 
-use develop::{Balance, Bits, Crop, Demosaic, Highlights, Look, OutputSpace};
-use encode::{ChromaSubsampling, Format};
-use raw::Decoder;
+use darkroot_develop::{Balance, Bits, Crop, Demosaic, Highlights, Look, OutputSpace};
+use darkroot_encode::{ChromaSubsampling, Format};
+use darkroot_raw::Decoder;
 
 use super::Key;
 use crate::settings::{self, Engine, ProfileChoice, SPACES, Settings};

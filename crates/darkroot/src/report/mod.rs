@@ -6,9 +6,9 @@ pub(crate) use shown::base64;
 
 use std::fmt::Write as _;
 
-use chart::Layout;
-use colour::{RgbSpace, Vector3, Xyz, white};
-use profile::{Errors, Kind};
+use darkroot_chart::Layout;
+use darkroot_colour::{RgbSpace, Vector3, Xyz, white};
+use darkroot_profile::{Errors, Kind};
 
 use crate::calibrate::{Calibrated, EXPOSURES, Judged};
 use crate::make_profile::{MadeLight, MadeProfile};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use colour::{Lab, Xyz, white};
-use profile::{Calibration, lint};
+use darkroot_colour::{Lab, Xyz, white};
+use darkroot_profile::{Calibration, lint};
 
 use super::css;
 use crate::calibrate::Judged;
@@ -103,7 +103,7 @@ pub(super) fn trust(calibration: &Calibration, patches: &[Judged]) -> String {
         let largest = rgb.iter().copied().fold(1e-9, f64::max);
         let least = rgb.iter().copied().fold(f64::INFINITY, f64::min).max(0.0);
         let (angle, radius) =
-            (profile::hue_plane::position(rgb) / 6.0 * std::f64::consts::TAU, 1.0 - least / largest);
+            (darkroot_profile::hue_plane::position(rgb) / 6.0 * std::f64::consts::TAU, 1.0 - least / largest);
         [radius * angle.cos(), radius * angle.sin()]
     };
     let known: Vec<[f64; 2]> = used(patches).map(|p| position(p.rgb)).collect();
@@ -115,7 +115,7 @@ pub(super) fn trust(calibration: &Calibration, patches: &[Judged]) -> String {
         for hue in 0..HUES {
             let (inner, outer) = (ring as f64 / RINGS as f64, (ring + 1) as f64 / RINGS as f64);
             let saturation = ((inner + outer) / 2.0).min(0.97);
-            let pure = profile::hue_plane::at_position(6.0 * (hue as f64 + 0.5) / HUES as f64);
+            let pure = darkroot_profile::hue_plane::at_position(6.0 * (hue as f64 + 0.5) / HUES as f64);
             let rgb = pure.map(|p| (1.0 - saturation + saturation * p).max(0.02));
             let here = position(rgb);
             let near =

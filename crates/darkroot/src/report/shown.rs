@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::io::Cursor;
 
-use chart::Quad;
-use colour::{RgbSpace, Vector3, white};
-use photo::metadata::Metadata;
-use photo::{Picture, PictureSpace, Samples, Size};
+use darkroot_chart::Quad;
+use darkroot_colour::{RgbSpace, Vector3, white};
+use darkroot_photo::metadata::Metadata;
+use darkroot_photo::{Picture, PictureSpace, Samples, Size};
 
 use crate::calibrate::Calibrated;
 use crate::shot::{Shot, View};
@@ -71,9 +71,9 @@ fn jpeg(view: &View, calibrated: &Calibrated, bin: usize) -> Vec<u8> {
     let samples = (0..size.area()).flat_map(pixel).collect();
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
     let mut out = Cursor::new(Vec::new());
-    let options = encode::Options { quality: 85, ..encode::Options::default() };
+    let options = darkroot_encode::Options { quality: 85, ..darkroot_encode::Options::default() };
     // In memory, of a picture of ordinary size: nothing that could fail. A missing picture would be seen.
-    let _ = encode::write(&picture, encode::Format::Jpeg, &options, &Metadata::default(), &mut out);
+    let _ = darkroot_encode::write(&picture, darkroot_encode::Format::Jpeg, &options, &Metadata::default(), &mut out);
     out.into_inner()
 }
 

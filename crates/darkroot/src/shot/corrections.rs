@@ -1,11 +1,11 @@
 //! What a shot's own patches tell of its light: glare with its colour, a slope of light, a change of the light's colour
 //! over the chart. What patches are corrected by must not be judged by them, so it is found again without each.
 
-use chart::{ChannelLight, Slope};
-use colour::difference::de2000;
-use colour::{Xyz, white};
-use profile::Order;
-use profile::fit::{Samples, plain};
+use darkroot_chart::{ChannelLight, Slope};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{Xyz, white};
+use darkroot_profile::Order;
+use darkroot_profile::fit::{Samples, plain};
 
 use super::gates;
 

@@ -1,8 +1,8 @@
 //! Whether a shot of a chart is good enough to make a profile of it.
 
-use chart::{EdgeWidth, Layout, Measurement, Quad, Slope};
-use colour::temperature::Temperature;
-use colour::{Xy, Xyz};
+use darkroot_chart::{EdgeWidth, Layout, Measurement, Quad, Slope};
+use darkroot_colour::temperature::Temperature;
+use darkroot_colour::{Xy, Xyz};
 
 use super::corrections::ColourChange;
 use super::{ShotOptions, View};
@@ -294,9 +294,9 @@ fn angle(corners: &Quad) -> Gate {
 /// Luminance of camera colours, by the combination of channels that fits the expected luminances best; green alone
 /// where that cannot be told.
 pub(super) fn luminances(rgb: &[[f64; 3]], expected: &[Xyz]) -> Vec<f64> {
-    use profile::fit::{Samples, plain};
-    let fitted = Samples::new(rgb.to_vec(), expected.to_vec(), colour::white::D50)
-        .and_then(|samples| plain::root(&samples, profile::Order::One));
+    use darkroot_profile::fit::{Samples, plain};
+    let fitted = Samples::new(rgb.to_vec(), expected.to_vec(), darkroot_colour::white::D50)
+        .and_then(|samples| plain::root(&samples, darkroot_profile::Order::One));
     match fitted {
         Ok(fit) => rgb.iter().map(|rgb| fit.model.xyz(*rgb).y).collect(),
         Err(_) => rgb.iter().map(|rgb| rgb[1]).collect(),

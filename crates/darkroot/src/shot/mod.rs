@@ -7,8 +7,8 @@ mod view;
 
 use std::path::{Path, PathBuf};
 
-use chart::{Layout, Measurement, Quad, Reference, Slope, edge_width, measure};
-use colour::white;
+use darkroot_chart::{Layout, Measurement, Quad, Reference, Slope, edge_width, measure};
+use darkroot_colour::white;
 
 use corrections::{ColourChange, Corrections, Patches, Sloped, Wanted};
 
@@ -50,7 +50,7 @@ pub struct Shot {
     /// The file.
     pub path: PathBuf,
     /// The camera.
-    pub camera: photo::Camera,
+    pub camera: darkroot_photo::Camera,
     /// Chart corners in pixels of the developed picture.
     pub corners: Quad,
     /// The part of each patch that was measured.
@@ -140,8 +140,8 @@ pub fn open(
         }
     }
 
-    let expected: Vec<colour::Xyz> = colours.iter().map(chart::ReferenceColour::xyz_d50).collect();
-    let places = chart::windows::places(layout);
+    let expected: Vec<darkroot_colour::Xyz> = colours.iter().map(darkroot_chart::ReferenceColour::xyz_d50).collect();
+    let places = darkroot_chart::windows::places(layout);
     let by_hand = |i: usize| options.exclude.iter().any(|e| e.eq_ignore_ascii_case(names[i]));
     let used: Vec<bool> =
         (0..names.len()).map(|i| !is_clipped(measurements[i].clipped) && !by_hand(i)).collect();
@@ -263,15 +263,15 @@ fn check_inside(corners: &Quad, view: &View) -> Result<(), String> {
 }
 
 /// Whether reference colours are those of the layout, roughly.
-fn check_chart(layout: &Layout, colours: &[chart::ReferenceColour]) -> Result<(), String> {
+fn check_chart(layout: &Layout, colours: &[darkroot_chart::ReferenceColour]) -> Result<(), String> {
     const MOST: f64 = 15.0;
-    let off = |(patch, colour): (&chart::PatchPlace, &chart::ReferenceColour)| {
-        colour::difference::de2000(colour.xyz_d50().lab(white::D50), patch.lab)
+    let off = |(patch, colour): (&darkroot_chart::PatchPlace, &darkroot_chart::ReferenceColour)| {
+        darkroot_colour::difference::de2000(colour.xyz_d50().lab(white::D50), patch.lab)
     };
     let mean = layout.patches.iter().zip(colours).map(off).sum::<f64>() / colours.len().max(1) as f64;
     if mean <= MOST {
         return Ok(());
     }
-    let fault = chart::reference::ReferenceError::OtherChart { chart: layout.title.clone(), off: mean };
+    let fault = darkroot_chart::reference::ReferenceError::OtherChart { chart: layout.title.clone(), off: mean };
     Err(format!("of the reference: {fault}"))
 }

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use colour::RgbSpace;
-use photo::{Layout, Mosaic, Size};
+use darkroot_colour::RgbSpace;
+use darkroot_photo::{Layout, Mosaic, Size};
 
 use crate::Error;
 

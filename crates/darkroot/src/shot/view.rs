@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use develop::{CameraMatrix, Frame};
-use photo::metadata::{Directory, tag};
-use photo::{AsShot, Camera, Layout, Orientation, Rect, Size};
+use darkroot_develop::{CameraMatrix, Frame};
+use darkroot_photo::metadata::{Directory, tag};
+use darkroot_photo::{AsShot, Camera, Layout, Orientation, Rect, Size};
 
 use super::rendered;
 use crate::{Error, Settings, files};
@@ -44,7 +44,7 @@ impl View {
             return Err(Error::Chart { path: path.to_owned(), what: what.to_owned() });
         }
         let bytes = files::read(path)?;
-        let capture = raw::decode(&bytes, settings.decoder, &settings.limits)
+        let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
             .map_err(|source| Error::Raw { path: path.to_owned(), source })?;
         if matches!(capture.counts.layout(), Layout::Monochrome) {
             let what = "is monochrome; a colour profile needs a colour sensor".to_owned();
@@ -55,7 +55,7 @@ impl View {
         let crop = Rect { x: inner.x - active.x, y: inner.y - active.y, ..inner };
         let seconds = capture.metadata.number(Directory::Exif, tag::EXPOSURE_TIME);
         Ok(Self {
-            frame: develop::frame(&capture),
+            frame: darkroot_develop::frame(&capture),
             size: capture.orientation.applied_to(crop.size()),
             matrix: CameraMatrix::of(&capture),
             as_shot: match capture.as_shot {

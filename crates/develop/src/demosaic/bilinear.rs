@@ -1,6 +1,6 @@
 //! Bilinear demosaicing for any repeating array of red, green and blue filters: the plain reference.
 
-use photo::{CameraSpace, Cfa, Mosaic, Rgb};
+use darkroot_photo::{CameraSpace, Cfa, Mosaic, Rgb};
 
 use super::{signed_sqrt, signed_square};
 

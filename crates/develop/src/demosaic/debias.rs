@@ -5,7 +5,7 @@
 //! different ones: in deep shadows red and blue come out too dark and green too bright, by some percent. The
 //! difference of the two variances, as measured for the capture at this brightness, is added.
 
-use photo::{CameraSpace, Layout, Mosaic, Rgb};
+use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb};
 
 use crate::noise::Noise;
 
@@ -49,7 +49,7 @@ pub fn debias(mosaic: &Mosaic<f32>, border: usize, noise: &Noise, picture: &mut 
 mod tests {
     use super::*;
     use crate::demosaic::{Method, demosaic};
-    use photo::{
+    use darkroot_photo::{
         BlackLevel, Camera, Capture, Cfa, Counts, Metadata, Orientation, Rect, Size, Source, WhiteLevel,
     };
 

@@ -6,10 +6,10 @@
 //! by a local linear estimator; the two directions are joined by the inverse of their estimated errors. Other than in
 //! the paper, less of the second difference is used and the overshoot of green is limited.
 
-use photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
+use darkroot_photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
 
 use super::{signed_sqrt, signed_square};
-use profile::simd::vectorised;
+use darkroot_profile::simd::vectorised;
 
 /// Pixels around the result that the method looks at: 2 for the interpolation, 4 for its low-pass, 4 for the
 /// statistics, 1 for red and blue.

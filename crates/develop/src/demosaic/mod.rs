@@ -4,7 +4,7 @@
 //! on linear light smears bright into dark, and the square root is nearly even for shot noise. Unlike a curve
 //! with a toe it is homogeneous, so twice the light still gives twice the picture.
 
-use photo::{CameraSpace, Layout, Mosaic, Rgb, Size};
+use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb, Size};
 
 use crate::Demosaic;
 

@@ -1,4 +1,4 @@
-use photo::Cfa;
+use darkroot_photo::Cfa;
 
 use super::*;
 

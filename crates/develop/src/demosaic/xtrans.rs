@@ -14,10 +14,10 @@
 
 use std::sync::LazyLock;
 
-use photo::{CameraSpace, Cfa, Mosaic, Rgb};
+use darkroot_photo::{CameraSpace, Cfa, Mosaic, Rgb};
 
 use super::{signed_sqrt, signed_square};
-use profile::simd::vectorised;
+use darkroot_profile::simd::vectorised;
 
 /// Pixels around the result that the method looks at: 4 for the prediction, 4 for its errors.
 pub const BORDER: usize = REACH + HALF;

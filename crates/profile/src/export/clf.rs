@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
+use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
 
 use super::Error;
 use super::cube::{describe, plain};

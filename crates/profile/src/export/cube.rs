@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 
-use colour::{RgbSpace, Vector3, Xyz, white};
+use darkroot_colour::{RgbSpace, Vector3, Xyz, white};
 
 use super::Error;
 use super::grid::{Grid, SIZES};

@@ -1,7 +1,7 @@
 //! How far a file is from the profile that it was made of, over colours that pictures have.
 
-use colour::difference::de2000;
-use colour::{Matrix3, RgbSpace, TransferCurve, Vector3, Xyz, white};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{Matrix3, RgbSpace, TransferCurve, Vector3, Xyz, white};
 
 use crate::{Calibration, Model, Summary};
 

@@ -52,7 +52,7 @@ impl Error {
 
 #[cfg(test)]
 mod tests {
-    use colour::{Matrix3, white};
+    use darkroot_colour::{Matrix3, white};
 
     use crate::residual::Centre;
     use crate::{

@@ -96,13 +96,13 @@ const WHITE: &str = "(1,1,1) is the white of the light; XYZ relative to D50 by B
 
 #[cfg(test)]
 mod tests {
-    use colour::{Matrix3, Xyz};
+    use darkroot_colour::{Matrix3, Xyz};
 
     use super::*;
     use crate::samples_for_tests::all_parts;
     use crate::*;
 
-    fn calibration(name: &str, xy: colour::Xy, kind: Kind, model: Model) -> Calibration {
+    fn calibration(name: &str, xy: darkroot_colour::Xy, kind: Kind, model: Model) -> Calibration {
         let summary = |k: f64| Summary { mean: k / 3.0, median: k / 7.0, p95: k * 1.1, max: k * 2e-9 };
         let errors = |k: f64| Errors { de2000: summary(k), de_uv: summary(k + 0.1) };
         Calibration {
@@ -135,11 +135,11 @@ mod tests {
         let chromatic = Model { root: None, ..parts[4].clone() };
         let half = Model { residual: None, ..parts[4].clone() };
         let calibrations = vec![
-            calibration("D75", colour::Xy::new(0.29902, 0.31485), Kind::Chromatic, chromatic),
-            calibration("D65", colour::white::D65_XY, Kind::Root(Order::Four), root.unwrap().into()),
-            calibration("D50", colour::white::D50_XY, Kind::Half, half),
-            calibration("B", colour::Xy::new(0.38, 0.38), Kind::Polynomial(4), parts[3].clone()),
-            calibration("A", colour::white::A_XY, Kind::Linear, Model::linear(&matrix)),
+            calibration("D75", darkroot_colour::Xy::new(0.29902, 0.31485), Kind::Chromatic, chromatic),
+            calibration("D65", darkroot_colour::white::D65_XY, Kind::Root(Order::Four), root.unwrap().into()),
+            calibration("D50", darkroot_colour::white::D50_XY, Kind::Half, half),
+            calibration("B", darkroot_colour::Xy::new(0.38, 0.38), Kind::Polynomial(4), parts[3].clone()),
+            calibration("A", darkroot_colour::white::A_XY, Kind::Linear, Model::linear(&matrix)),
         ];
         let origin = Origin { summary: "a test".into(), date: "2026-05-01".into(), ..Origin::default() };
         Profile::new(camera, calibrations, origin).unwrap()

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use colour::{Matrix3, Xy, Xyz};
+use darkroot_colour::{Matrix3, Xy, Xyz};
 use serde::Deserialize;
 
 use super::{Error, FORMAT, VERSION, WHITE};

@@ -7,7 +7,7 @@
 //!
 //! XYZ = g * white + (r - g) c1 + (b - g) c2 + sum over e of psi_e c_e
 
-use colour::Xyz;
+use darkroot_colour::Xyz;
 use nalgebra::DMatrix;
 
 use super::least_squares::{Problem, Solution};

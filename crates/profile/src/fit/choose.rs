@@ -1,6 +1,6 @@
 //! All kinds of models side by side, and the best by leave-one-out.
 
-use colour::Xyz;
+use darkroot_colour::Xyz;
 
 use super::{Fit, FitError, Samples, anchored, hue_plane, plain};
 use crate::{Figures, Kind};

@@ -1,7 +1,7 @@
 //! The full model of the spectral prior: a hue-plane model and a residual over chromaticity, fitted to a virtual
 //! set.
 
-use colour::{Matrix3, Vector3};
+use darkroot_colour::{Matrix3, Vector3};
 use nalgebra::{Cholesky, DMatrix};
 
 use super::least_squares::Problem;

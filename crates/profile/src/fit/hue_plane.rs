@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! What a small error in XYZ means in CIEDE2000.
 
-use colour::difference::de2000;
-use colour::{Lab, Matrix3, Xyz};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{Lab, Matrix3, Xyz};
 
 /// (6/29)^3 and (29/3)^3, where CIELAB turns linear (CIE 015:2018, 8.2.1).
 const EPSILON: f64 = 216.0 / 24389.0;
@@ -54,7 +54,7 @@ fn metric_root(lab: Lab) -> Matrix3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use colour::{Vector3, white};
+    use darkroot_colour::{Vector3, white};
 
     #[test]
     fn a_small_step_is_as_long_as_its_colour_difference() {

@@ -37,7 +37,7 @@ pub use white::white_through;
 pub mod choose;
 pub use choose::{Candidate, fit};
 
-use colour::Xyz;
+use darkroot_colour::Xyz;
 
 use crate::{Errors, Figures, Kind, Model};
 

@@ -1,6 +1,6 @@
 //! Plain least squares in XYZ, as the papers have it: matrices, polynomials, root polynomials.
 
-use colour::Xyz;
+use darkroot_colour::Xyz;
 use nalgebra::DMatrix;
 
 use super::least_squares::{Problem, Solution};

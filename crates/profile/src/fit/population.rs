@@ -1,7 +1,7 @@
 //! What cameras have in common: statistics of their sensitivities, which do not tell the single cameras.
 
-use colour::Spectrum;
-use colour::spectrum::SAMPLES;
+use darkroot_colour::Spectrum;
+use darkroot_colour::spectrum::SAMPLES;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use crate::spectra::Sensitivities;

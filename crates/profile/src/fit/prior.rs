@@ -6,8 +6,8 @@
 //! with noise and perhaps a gain error and flare that all patches share; white is exact. The posterior mean is the camera as far as
 //! it is known. alpha, the noise and the shared errors are those under which the patches are most likely.
 
-use colour::Spectrum;
-use colour::spectrum::SAMPLES;
+use darkroot_colour::Spectrum;
+use darkroot_colour::spectrum::SAMPLES;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::population::{ChannelPopulation, Population};

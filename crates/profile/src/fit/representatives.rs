@@ -1,6 +1,6 @@
 //! Few reflectances that stand for many.
 
-use colour::{Lab, Spectrum};
+use darkroot_colour::{Lab, Spectrum};
 
 /// Rounds of Lloyd's algorithm.
 const ROUNDS: usize = 40;

@@ -6,7 +6,7 @@
 //! that of the model's matrix near grey, is kept above a margin over a grid of chromaticities (they stand for all
 //! colours, since the model is homogeneous) by a growing penalty on what it lacks, with Gauss and Newton's method.
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::FitError;

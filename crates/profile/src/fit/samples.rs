@@ -1,6 +1,6 @@
 //! The colours of a fit.
 
-use colour::Xyz;
+use darkroot_colour::Xyz;
 
 use super::FitError;
 

@@ -1,6 +1,6 @@
 //! Models of the spectral prior, from the shot of a chart whose patches have known reflectances.
 
-use colour::{Spectrum, Xyz};
+use darkroot_colour::{Spectrum, Xyz};
 use rayon::prelude::*;
 
 use super::prior::{Hyperparameters, Observed, Prior};

@@ -1,7 +1,7 @@
 //! A large set of colours rendered through a camera that is known only by its posterior: what the models of the
 //! spectral prior are fitted to.
 
-use colour::{Matrix3, Spectrum};
+use darkroot_colour::{Matrix3, Spectrum};
 
 use super::metric::de2000_weights;
 use super::population::parse_reflectances;

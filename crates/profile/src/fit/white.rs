@@ -1,6 +1,6 @@
 //! The white of the light, from a chart whose grey patches are not quite grey.
 
-use colour::{Matrix3, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Vector3, Xyz};
 
 use super::{FitError, Samples, plain};
 use crate::{Kind, Order};

@@ -15,7 +15,7 @@ pub(super) struct HuePlanes {
 
 impl HuePlanes {
     pub(super) fn new(part: &HuePlane) -> Self {
-        let rows = |m: &colour::Matrix3| [0, 1, 2].map(|r| [0, 1, 2].map(|c| m[(r, c)] as f32));
+        let rows = |m: &darkroot_colour::Matrix3| [0, 1, 2].map(|r| [0, 1, 2].map(|c| m[(r, c)] as f32));
         let knots = part.knots();
         let scale = knots.len() as f32 / CORNERS as f32;
         Self { knots: knots.iter().chain(knots.first()).map(rows).collect(), scale }

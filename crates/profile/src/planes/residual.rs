@@ -20,7 +20,7 @@ impl ResidualPlanes {
         let at = |i: usize| {
             let (red, blue) = (share(i % (STEPS + 1)), share(i / (STEPS + 1)));
             // Beyond the triangle of real shares green's root is negative; the function goes on smoothly.
-            let roots = colour::Vector3::new(red, 1.0 - red - blue, blue);
+            let roots = darkroot_colour::Vector3::new(red, 1.0 - red - blue, blue);
             let xyz = part.at(&roots.normalize());
             [xyz.x as f32, xyz.y as f32, xyz.z as f32]
         };
@@ -65,7 +65,7 @@ mod tests {
     fn the_table_has_the_directions_of_its_colours() {
         // A colour whose roots have the shares 0.5, 0.3, 0.2.
         let rgb = [0.25, 0.09, 0.04];
-        let roots = colour::Vector3::new(0.5, 0.3, 0.2);
+        let roots = darkroot_colour::Vector3::new(0.5, 0.3, 0.2);
         assert!((direction(rgb) - roots.normalize()).norm() < 1e-12);
     }
 }

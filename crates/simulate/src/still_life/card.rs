@@ -1,6 +1,6 @@
 //! Upright cards that face the camera: the colour chart, the grey card, the resolution target.
 
-use colour::Vector3;
+use darkroot_colour::Vector3;
 
 use crate::chart;
 use crate::exact::{cosine_of_turns, smoothstep};

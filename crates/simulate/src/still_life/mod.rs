@@ -9,8 +9,8 @@ mod room;
 mod skin;
 mod solid;
 
-use colour::{Spectrum, Vector3};
-use photo::Size;
+use darkroot_colour::{Spectrum, Vector3};
+use darkroot_photo::Size;
 
 use crate::chart;
 use crate::exact::{gaussian, smoothstep};

@@ -1,6 +1,6 @@
 //! The window that lights the still life, the table and the backdrop.
 
-use colour::Vector3;
+use darkroot_colour::Vector3;
 
 use crate::exact::smoothstep;
 use crate::random::{bits, smooth_noise};

@@ -1,6 +1,6 @@
 //! What the surfaces of the still life are made of: reflectances, mixtures of them, and gloss.
 
-use colour::{Lab, Spectrum, Vector3};
+use darkroot_colour::{Lab, Spectrum, Vector3};
 
 use crate::exact::smoothstep;
 use crate::random::smooth_noise;

@@ -1,6 +1,6 @@
 //! Ellipsoids: fruit, balls, and bowls where the top is cut off.
 
-use colour::Vector3;
+use darkroot_colour::Vector3;
 
 use crate::exact::smoothstep;
 

@@ -1,6 +1,6 @@
 //! One shot of a chart colours the whole session.
 
-use colour::illuminant::Illuminant;
+use darkroot_colour::illuminant::Illuminant;
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn dng_of(scene: &Scene, light: &str) -> Vec<u8> {
 /// Two days: the first with a chart under daylight, the second without one, and a file of another camera.
 fn desk() -> Desk {
     let desk = Desk::new();
-    let chart = Scene::chart(SIZE, CORNERS, &simulate::chart::reflectances(), 6, 0.15);
+    let chart = Scene::chart(SIZE, CORNERS, &darkroot_simulate::chart::reflectances(), 6, 0.15);
     desk.put("in/day 1/chart.dng", dng_of(&chart, "D50"));
     desk.put("in/day 1/still.dng", dng_of(&Scene::gradient(SIZE), "D50"));
     desk.put("in/day 1/nikon.nef", small_nef());

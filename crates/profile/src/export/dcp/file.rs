@@ -1,6 +1,6 @@
 //! A DCP to bytes: one directory as in TIFF, behind the magic number "RC".
 
-use colour::Matrix3;
+use darkroot_colour::Matrix3;
 
 use super::Dcp;
 

@@ -1,7 +1,7 @@
 //! The table over hue and saturation of linear ProPhoto RGB (DNG 1.7.1, chapter 6, "Hue/Saturation/Value Mapping
 //! Table"), of one layer.
 
-use colour::{Matrix3, RgbSpace, Vector3, white};
+use darkroot_colour::{Matrix3, RgbSpace, Vector3, white};
 
 use crate::Model;
 use crate::hue_plane::{at_position, position};

@@ -1,6 +1,6 @@
 //! A DCP as a Darkroot profile: a matrix for each hue near grey, and a smooth function of chromaticity for the rest.
 
-use colour::{Matrix3, Vector3, Xyz, white};
+use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use nalgebra::DMatrix;
 
 use super::{Dcp, DcpLight, HueSatMap, light_of};

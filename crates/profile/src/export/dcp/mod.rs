@@ -16,9 +16,9 @@ mod read;
 pub use hue_sat::HueSatMap;
 pub use import::{Imported, camera, import};
 
-use colour::adaptation::bradford;
-use colour::temperature::{daylight_xy, planckian_xy};
-use colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::temperature::{daylight_xy, planckian_xy};
+use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
 
 use super::Error;
 use crate::{Calibration, Light, Model, Profile};

@@ -1,7 +1,7 @@
 //! Bytes to a DCP, within their bounds, by whatever program they were written.
 
-use colour::adaptation::bradford;
-use colour::{Matrix3, Vector3, white};
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::{Matrix3, Vector3, white};
 
 use super::file::{kind, tag};
 use super::{Dcp, DcpLight, HueSatMap, light_of};
@@ -174,7 +174,7 @@ mod tests {
     use crate::export::dcp::file::write;
     use crate::export::tests::{calibration, models, profile};
     use crate::{Calibration, Light};
-    use colour::white;
+    use darkroot_colour::white;
 
     fn two_lights() -> Dcp {
         let one = calibration(models().remove(1));

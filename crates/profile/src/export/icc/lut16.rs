@@ -1,6 +1,6 @@
 //! What profiles of version 2 (ICC.1:2001-04) have otherwise: lut16Type, its codes of CIELAB, and texts in ASCII.
 
-use colour::{Lab, TransferCurve};
+use darkroot_colour::{Lab, TransferCurve};
 
 use super::{Curves, Icc, Version, long};
 use crate::export::grid::Grid;

@@ -7,8 +7,8 @@
 
 mod lut16;
 
-use colour::adaptation::bradford;
-use colour::{Lab, TransferCurve, Xyz, white};
+use darkroot_colour::adaptation::bradford;
+use darkroot_colour::{Lab, TransferCurve, Xyz, white};
 
 use super::Error;
 use super::grid::Grid;
