@@ -11,15 +11,15 @@ use std::path::{Path, PathBuf};
 
 use darkroot_colour::difference::de2000;
 use darkroot_colour::{RgbSpace, Spectrum, TransferCurve};
-use darkroot_tests::{lab, output, pixels, root, space_of};
 use darkroot_develop::{Balance, Bits, Exposure as Brightness, Highlights, Look, Recipe};
-use image::RgbImage;
 use darkroot_photo::{Layout, Orientation, Picture, Size};
 use darkroot_profile::Profile;
-use serde::Deserialize;
 use darkroot_simulate::camera::{filters, x_trans};
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene};
+use darkroot_tests::{lab, output, pixels, root, space_of};
+use image::RgbImage;
+use serde::Deserialize;
 
 /// Largest difference of a pixel and of the mean of all, dE2000.
 const MOST: f64 = 1.0;

@@ -176,7 +176,10 @@ fn every_profile_parses_and_maps_white_to_white() {
     for (path, text) in profiles() {
         assert_eq!(fault(&text), None, "{}", path.display());
         let profile = darkroot_profile::file::parse(&text).unwrap();
-        assert_eq!(darkroot_profile::file::parse(&darkroot_profile::file::format(&profile)).as_ref(), Ok(&profile));
+        assert_eq!(
+            darkroot_profile::file::parse(&darkroot_profile::file::format(&profile)).as_ref(),
+            Ok(&profile)
+        );
     }
 }
 

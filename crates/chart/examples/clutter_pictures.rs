@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for kind in KINDS {
         for number in 0..each {
             let picture = picture(kind, number);
-            let byte = |v: f32| (darkroot_colour::TransferCurve::Srgb.encode(f64::from(v)) * 255.0).round() as u8;
+            let byte =
+                |v: f32| (darkroot_colour::TransferCurve::Srgb.encode(f64::from(v)) * 255.0).round() as u8;
             let pixel = |i: usize| picture.planes.each_ref().map(|plane| byte(plane[i]));
             let bytes = (0..picture.width * picture.height).flat_map(pixel).collect();
             let (width, height) = (u32::try_from(picture.width)?, u32::try_from(picture.height)?);

@@ -4,8 +4,8 @@
 //! Two Gaussian steps are fitted to that profile: their places are known but for a common shift, their heights and their
 //! common spread are not. So gaps that blur has filled tell as much as open ones.
 
-use nalgebra::{Matrix3, Vector3};
 use darkroot_photo::Mosaic;
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
 use crate::measure::{CLIPPED, for_each_inside};

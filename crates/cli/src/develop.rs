@@ -7,6 +7,7 @@ use anyhow::Result;
 use clap::Args;
 use darkroot::{Job, ProfileStore, Report, Target, plan_outputs};
 
+use crate::hint;
 use crate::picture::{Order, Picture, source_paths, sources};
 use crate::progress::Progress;
 use crate::{Common, Outcome};
@@ -73,7 +74,7 @@ impl Develop {
                         progress.say(&words(report, order, common.verbose));
                     }
                 }
-                Err(error) => progress.say(&format!("error: {error}")),
+                Err(error) => progress.say(&format!("error: {}", hint::words(error))),
             }
             failures += usize::from(result.is_err());
             if self.json {
@@ -133,7 +134,7 @@ fn print_json(job: &Job, order: &Order, result: &Result<Report, darkroot::Error>
         }
         Err(error) => serde_json::json!({
             "status": "failed", "input": job.input.to_string_lossy(), "output": job.output.to_string_lossy(),
-            "error": error.to_string(),
+            "error": hint::words(error),
         }),
     };
     line["settings_from"] = source_paths(&order.effective).into();

@@ -7,6 +7,7 @@ mod batch;
 mod chart;
 mod develop;
 mod evaluate;
+mod hint;
 mod inspect;
 mod interrupt;
 mod picture;
@@ -110,10 +111,16 @@ fn main() -> ExitCode {
         // Whoever reads our output has seen enough.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            crate::say(format_args!("error: {error:#}"));
+            crate::say(format_args!("error: {}", chain(&error)));
             ExitCode::from(2)
         }
     }
+}
+
+/// An error with what it comes from, and the hint of the first cause that has one.
+fn chain(error: &anyhow::Error) -> String {
+    let causes: Vec<String> = error.chain().map(hint::words).collect();
+    causes.join(": ")
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

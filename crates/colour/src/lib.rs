@@ -40,6 +40,8 @@ pub mod observer;
 pub mod weights;
 pub use weights::TristimulusWeights;
 
+pub mod statistics;
+
 mod sprague;
 mod tables;
 

@@ -7,8 +7,8 @@
 
 use std::path::{Path, PathBuf};
 
-use darkroot_colour::Spectrum;
 use darkroot::spectra;
+use darkroot_colour::Spectrum;
 use darkroot_profile::fit::population::{Population, format_reflectances, smoothed};
 use darkroot_profile::fit::representatives::clusters;
 

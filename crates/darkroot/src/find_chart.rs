@@ -116,11 +116,20 @@ pub fn preview(
             canvas.number(i + 1, at(chart.centre(i)));
         }
     }
-    let picture =
-        darkroot_photo::Picture { size, samples: Samples::U8(canvas.rgb), space: PictureSpace::Rgb(RgbSpace::SRGB) };
+    let picture = darkroot_photo::Picture {
+        size,
+        samples: Samples::U8(canvas.rgb),
+        space: PictureSpace::Rgb(RgbSpace::SRGB),
+    };
     let mut out = std::io::Cursor::new(Vec::new());
-    darkroot_encode::write(&picture, darkroot_encode::Format::Png, &darkroot_encode::Options::default(), &Metadata::default(), &mut out)
-        .map_err(|source| Error::Encode { path: output.to_owned(), source })?;
+    darkroot_encode::write(
+        &picture,
+        darkroot_encode::Format::Png,
+        &darkroot_encode::Options::default(),
+        &Metadata::default(),
+        &mut out,
+    )
+    .map_err(|source| Error::Encode { path: output.to_owned(), source })?;
     files::write_whole(output, out.get_ref(), overwrite)
 }
 

@@ -1,8 +1,8 @@
 //! The second engine: imagepipe, fed with our own decode, for comparison.
 
 use darkroot_develop::Bits;
-use imagepipe::{ImageSource, Pipeline};
 use darkroot_photo::{Capture, Counts, Layout, Orientation, Picture, PictureSpace, Samples, Size};
+use imagepipe::{ImageSource, Pipeline};
 use rawloader::{CFA, RawImage, RawImageData};
 
 /// Develops a capture with imagepipe's default pipeline, into sRGB.

@@ -103,7 +103,8 @@ pub fn verify(profile: &Profile, request: &ChartRequest, settings: &Settings) ->
     let sl1 = Summary::of(&pairs.iter().map(|(a, b)| de2000_sl1(*a, *b)).collect::<Vec<_>>());
     let below = pairs.iter().filter(|(a, b)| de2000(*a, *b) < 4.0).count();
     let nearest = profile.calibrations().iter().min_by(|a, b| {
-        let off = |c: &darkroot_profile::Calibration| (1e6 / c.light.kelvin() - 1e6 / light.light.kelvin()).abs();
+        let off =
+            |c: &darkroot_profile::Calibration| (1e6 / c.light.kelvin() - 1e6 / light.light.kelvin()).abs();
         off(a).total_cmp(&off(b))
     });
     let promised = nearest.and_then(|c| c.figures.leave_one_out.or(c.figures.held_out)).map(|e| e.de2000);

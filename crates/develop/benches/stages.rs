@@ -6,15 +6,17 @@
 
 use std::hint::black_box;
 
-use darkroot_colour::{RgbSpace, TransferCurve};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use darkroot_colour::{RgbSpace, TransferCurve};
 use darkroot_develop::demosaic::Method;
 use darkroot_develop::gamut::Primaries;
 use darkroot_develop::highlights::Treatment;
 use darkroot_develop::level::Levels;
 use darkroot_develop::tone::Curve;
 use darkroot_develop::transfer::Encoder;
-use darkroot_develop::{Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer};
+use darkroot_develop::{
+    Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer,
+};
 use darkroot_photo::{
     BlackLevel, Camera, CameraSpace, Capture, Cfa, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Rgb,
     Size, Source, WhiteLevel,

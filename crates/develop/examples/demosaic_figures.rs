@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 
 use darkroot_colour::TransferCurve::{self, Linear, Srgb};
 use darkroot_develop::demosaic::{Method, demosaic};
-use image::RgbImage;
 use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb, Size};
+use image::RgbImage;
 
 const BAYER: &str = "RGGB";
 const X_TRANS: &str = "GBGGRG RGRBGB GBGGRG GRGGBG BGBRGR GRGGBG";

@@ -3,7 +3,7 @@
 
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::temperature::{Temperature, daylight_xy};
-use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, white};
+use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, statistics, white};
 use darkroot_photo::{Calibration, Capture};
 
 use crate::survey::Survey;
@@ -176,8 +176,7 @@ pub fn estimate(survey: &Survey, matrix: Option<&CameraMatrix>) -> Option<[f64; 
     }
     let median = |k: usize| {
         let mut values: Vec<f64> = colours.iter().map(|c| c[k]).collect();
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
+        statistics::median(&mut values).unwrap_or_default()
     };
     let mut centre = [median(0), median(1)];
     for width in [0.5f64, 0.35, 0.25, 0.25, 0.25, 0.25] {

@@ -2,11 +2,11 @@
 
 use std::io::Cursor;
 
-use exif::experimental::Writer;
-use exif::{Context, In, Rational, SRational, Tag};
 use darkroot_colour::RgbSpace;
 use darkroot_photo::metadata::{Directory, Field, Value, tag};
 use darkroot_photo::{Metadata, Picture, PictureSpace};
+use exif::experimental::Writer;
+use exif::{Context, In, Rational, SRational, Tag};
 
 /// The fields as a block in the structure of TIFF, little endian, without the "Exif\0\0" that some files put
 /// before it. It is empty when there are no fields.

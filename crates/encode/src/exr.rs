@@ -5,13 +5,13 @@
 
 use std::io::{Seek, Write};
 
+use darkroot_photo::metadata::{Directory, tag};
+use darkroot_photo::{Metadata, PictureSpace, Samples};
 use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
     Blocks, Compression, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Text, Vec2,
     WritableImage,
 };
-use darkroot_photo::metadata::{Directory, tag};
-use darkroot_photo::{Metadata, PictureSpace, Samples};
 
 use crate::format::Frame;
 use crate::{Error, Format};
@@ -92,8 +92,8 @@ fn utf8(text: &str) -> Text {
 mod tests {
     use super::*;
     use crate::testing::{assert_lossless, encoded, metadata, picture};
-    use exr::meta::MetaData;
     use darkroot_colour::RgbSpace;
+    use exr::meta::MetaData;
 
     const LINEAR: PictureSpace =
         PictureSpace::Rgb(RgbSpace { curve: darkroot_colour::TransferCurve::Linear, ..RgbSpace::REC2020 });

@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder, EncodingError, SamplingFactor};
 use darkroot_photo::Metadata;
 use darkroot_photo::metadata::Directory;
+use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder, EncodingError, SamplingFactor};
 
 use crate::format::Frame;
 use crate::{ChromaSubsampling, Error, Format, Options, exif};

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::io::Write;
 
-use png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter, Info};
 use darkroot_photo::{Metadata, Samples};
+use png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter, Info};
 
 use crate::format::Frame;
 use crate::{Error, Format, exif};

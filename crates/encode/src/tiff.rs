@@ -2,6 +2,8 @@
 
 use std::io::{Seek, Write};
 
+use darkroot_photo::metadata::{Directory, Value};
+use darkroot_photo::{Metadata, PictureSpace, Samples};
 use tiff::decoder::ifd::Entry;
 use tiff::encoder::colortype::{ColorType, RGB8, RGB16, RGB32Float};
 use tiff::encoder::{
@@ -10,8 +12,6 @@ use tiff::encoder::{
 };
 use tiff::tags::{Tag, Type};
 use tiff::{Directory as Entries, TiffError, TiffResult};
-use darkroot_photo::metadata::{Directory, Value};
-use darkroot_photo::{Metadata, PictureSpace, Samples};
 
 use crate::format::Frame;
 use crate::{Error, Format, Options, TiffCompression, exif};
@@ -159,9 +159,9 @@ mod tests {
 
     use super::*;
     use crate::testing::{assert_lossless, decoded, encoded, metadata, picture};
-    use tiff::decoder::Decoder;
     use darkroot_colour::RgbSpace;
     use darkroot_photo::metadata::tag;
+    use tiff::decoder::Decoder;
 
     const SRGB: PictureSpace = PictureSpace::Rgb(RgbSpace::SRGB);
 

@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
+use darkroot_photo::Metadata;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
-use darkroot_photo::Metadata;
 
 use crate::format::Frame;
 use crate::{Error, Format, exif};

@@ -1,8 +1,8 @@
 //! What the camera wrote about the shot: standard Exif fields of any container.
 
+use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 use exif::{Context, In, Reader, Value as ExifValue};
 use flashraw::{PreviewEncoding, RawMetadata};
-use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 
 use crate::screen::Container;
 

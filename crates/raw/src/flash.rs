@@ -1,14 +1,14 @@
 //! The default decoder: flashraw.
 
 use darkroot_colour::{Matrix3, Xy};
+use darkroot_photo::{
+    AsShot, BlackLevel, Calibration, Camera, Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Rect,
+    Size, Source, WhiteLevel,
+};
 use flashraw::{
     BlackLevel as FlashBlack, CfaColor, CfaPattern, ColorMatrices, ColorMatrix, CorruptionPolicy,
     DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData, SampleFormat,
     SensorLayout,
-};
-use darkroot_photo::{
-    AsShot, BlackLevel, Calibration, Camera, Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Rect,
-    Size, Source, WhiteLevel,
 };
 
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};

@@ -1,7 +1,7 @@
 //! The picture that the camera embedded in the raw file.
 
-use flashraw::{FlashRaw, PreviewEncoding};
 use darkroot_photo::{Orientation, Size};
+use flashraw::{FlashRaw, PreviewEncoding};
 
 use crate::{Error, guarded, screen};
 

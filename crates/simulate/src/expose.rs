@@ -2,7 +2,9 @@
 
 use darkroot_colour::Spectrum;
 use darkroot_photo::metadata::{Directory, Value, tag};
-use darkroot_photo::{AsShot, Capture, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Size, Source, WhiteLevel};
+use darkroot_photo::{
+    AsShot, Capture, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Size, Source, WhiteLevel,
+};
 
 use crate::exact::exp2;
 use crate::{Camera, Scene, chart, random};

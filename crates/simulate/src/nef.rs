@@ -57,7 +57,11 @@ pub fn write(capture: &Capture, storage: Storage) -> Option<Vec<u8>> {
     let mut root = Ifd::default();
     preview_directory(&mut root, capture);
     root.fields(
-        capture.metadata.fields().iter().filter(|f| f.directory == darkroot_photo::metadata::Directory::Image),
+        capture
+            .metadata
+            .fields()
+            .iter()
+            .filter(|f| f.directory == darkroot_photo::metadata::Directory::Image),
     )
     .text(tag::MAKE, &capture.camera.make)
     .text(tag::MODEL, &capture.camera.model)

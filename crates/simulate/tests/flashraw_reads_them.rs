@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
 
 use darkroot_colour::Spectrum;
-use flashraw::{CfaColor, DecodeOptions, FlashRaw, OutputFormat, RawFrame};
 use darkroot_photo::{AsShot, BlackLevel, Capture, Counts, Filter, Layout, Mosaic, Orientation, Size};
 use darkroot_simulate::camera::{filters, x_trans};
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene, dng, nef};
+use flashraw::{CfaColor, DecodeOptions, FlashRaw, OutputFormat, RawFrame};
 
 const SIZE: Size = Size { width: 300, height: 200 };
 

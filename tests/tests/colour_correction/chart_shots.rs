@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use darkroot_chart::{Reference, ReferenceColour};
-use darkroot_colour::measured::Measured;
-use darkroot_colour::{Spectrum, Vector3, Xyz, adaptation, white};
 use darkroot::light::NamedLight;
 use darkroot::shot::Verdict;
 use darkroot::{ChartRequest, MadeProfile, Settings, ShotOptions, make_profile};
+use darkroot_chart::{Reference, ReferenceColour};
+use darkroot_colour::measured::Measured;
+use darkroot_colour::{Spectrum, Vector3, Xyz, adaptation, white};
 use darkroot_photo::{Capture, Counts, Layout, Size};
 use darkroot_profile::fit::population::Population;
 use darkroot_profile::fit::prior::Prior;

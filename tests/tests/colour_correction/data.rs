@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use darkroot::spectra;
 use darkroot_colour::Spectrum;
 use darkroot_colour::illuminant::Illuminant;
-use darkroot::spectra;
 use darkroot_profile::Sensitivities;
 use darkroot_profile::spectra::in_31_channels;
 

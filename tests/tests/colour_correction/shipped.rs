@@ -1,8 +1,8 @@
 //! The profiles that are built into the program, against the spectra that they were made from.
 
+use darkroot::ProfileStore;
 use darkroot_colour::illuminant::Illuminant;
 use darkroot_colour::{Spectrum, Vector3, Xyz, adaptation, white};
-use darkroot::ProfileStore;
 use darkroot_profile::lint::{Severity, check};
 use darkroot_profile::spectra::white as white_of;
 use darkroot_profile::{Errors, Kind, Model, Sensitivities};

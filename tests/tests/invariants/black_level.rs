@@ -1,9 +1,9 @@
 //! Black and white level: no light is black and saturation is white, whatever the numbers in the file.
 
-use darkroot_tests::{brighter, camera, develop, exact, flat_grey, layouts, measuring, pixels};
 use darkroot_photo::{BlackLevel, Capture, Counts, Layout, Picture, Size, WhiteLevel};
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::{Exposure, Scene};
+use darkroot_tests::{brighter, camera, develop, exact, flat_grey, layouts, measuring, pixels};
 
 const SIZE: Size = Size { width: 46, height: 32 };
 

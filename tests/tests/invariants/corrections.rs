@@ -1,11 +1,11 @@
 //! The corrections that a DNG carries, seen in finished pictures: on a flat field each pixel has a known value.
 
 use darkroot_colour::RgbSpace;
-use darkroot_tests::{flat_grey, layouts, measuring, output, pixels};
 use darkroot_develop::{Bits, Output, OutputSpace, Recipe};
 use darkroot_photo::correction::{Area, GainMap, Vignette, Warp};
 use darkroot_photo::{Capture, Correction, Layout, Rect, Size};
 use darkroot_simulate::camera::filters;
+use darkroot_tests::{flat_grey, layouts, measuring, output, pixels};
 
 const SIZE: Size = Size { width: 70, height: 46 };
 const LEVEL: f32 = 0.4;

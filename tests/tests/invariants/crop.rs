@@ -1,11 +1,11 @@
 //! A crop is a part of the whole; borders and odd areas do not shift the filter array.
 
 use darkroot_colour::RgbSpace;
-use darkroot_tests::{camera, develop, exact, layouts, measuring, output, pixels};
 use darkroot_develop::{Bits, Crop, Recipe};
 use darkroot_photo::{Capture, Orientation, Rect, Size};
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene};
+use darkroot_tests::{camera, develop, exact, layouts, measuring, output, pixels};
 
 const SIZE: Size = Size { width: 91, height: 63 };
 
@@ -75,7 +75,9 @@ fn a_masked_border_does_not_shine_into_the_picture() {
         let camera = Camera { masked: (4, 6), ..camera(layout) };
         let capture = exact(&Scene::gradient(SIZE), &camera, &Exposure::default());
         let mut lit = capture.clone();
-        let darkroot_photo::Counts::F32(mosaic) = &mut lit.counts else { panic!("exact captures are floating-point") };
+        let darkroot_photo::Counts::F32(mosaic) = &mut lit.counts else {
+            panic!("exact captures are floating-point")
+        };
         let planes = mosaic.layout.planes();
         let row = mosaic.size.width * planes;
         for (i, v) in mosaic.samples.iter_mut().enumerate() {

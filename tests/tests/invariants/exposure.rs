@@ -1,14 +1,14 @@
 //! Twice the light is twice the picture (architecture, invariants 1 and 10).
 
-use darkroot_tests::{
-    bent_profile, brighter, camera, develop, exact, flat_grey, layouts, measuring, pixels, profiles,
-};
 use darkroot_develop::{Balance, Bits, Demosaic, Exposure as Brightness, Look, Output, OutputSpace, Recipe};
 use darkroot_photo::{Capture, Layout, Picture, Size};
 use darkroot_profile::Profile;
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene};
+use darkroot_tests::{
+    bent_profile, brighter, camera, develop, exact, flat_grey, layouts, measuring, pixels, profiles,
+};
 
 const SIZE: Size = Size { width: 120, height: 80 };
 

@@ -1,11 +1,11 @@
 //! Grey stays grey (architecture, invariant 2).
 
 use darkroot_colour::{RgbSpace, Spectrum};
-use darkroot_tests::{camera, develop, flat_grey, layouts, output, pixels, profiles};
 use darkroot_develop::{Bits, Look, Recipe};
 use darkroot_photo::{Layout, Size};
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Exposure, Scene};
+use darkroot_tests::{camera, develop, flat_grey, layouts, output, pixels, profiles};
 
 const SIZE: Size = Size { width: 20, height: 14 };
 const LOOKS: [Look; 4] = [Look::Neutral, Look::Vivid, Look::Flat, Look::Linear];

@@ -2,10 +2,10 @@
 
 use darkroot_colour::difference::de2000;
 use darkroot_colour::{Lab, RgbSpace, Spectrum};
-use darkroot_tests::{camera, develop, exact, lab, layouts, output, pixels, profiles, saturated, with_light};
 use darkroot_develop::{Bits, Highlights, Look, Recipe};
 use darkroot_photo::{Capture, Layout, Size};
 use darkroot_simulate::{Exposure, Scene};
+use darkroot_tests::{camera, develop, exact, lab, layouts, output, pixels, profiles, saturated, with_light};
 
 const SIZE: Size = Size { width: 160, height: 24 };
 const LOOKS: [Look; 3] = [Look::Neutral, Look::Vivid, Look::Flat];

@@ -1,13 +1,13 @@
 //! No file, however broken, panics (architecture, invariant 4): it is developed or it is an error in words.
 
 use darkroot_colour::RgbSpace;
-use darkroot_tests::{output, real_files};
 use darkroot_develop::{Balance, Bits, Crop, Exposure as Brightness, Highlights, Recipe};
 use darkroot_photo::{BlackLevel, Capture, Layout, Rect, Size, WhiteLevel};
 use darkroot_raw::{Decoder, Limits};
 use darkroot_simulate::camera::{filters, x_trans};
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene, dng, nef};
+use darkroot_tests::{output, real_files};
 
 const SIZE: Size = Size { width: 48, height: 32 };
 const SMALL: Limits = Limits { max_samples: 1 << 22, max_side: 1 << 14 };
@@ -152,12 +152,18 @@ fn headers_that_contradict_each_other_are_developed_or_refused() {
         Capture { analog_balance: [0.0; 3], ..sound.clone() },
         Capture { as_shot: Some(darkroot_photo::AsShot::Neutral([0.0, 1.0, 0.0])), ..sound.clone() },
         Capture { as_shot: Some(darkroot_photo::AsShot::Neutral([1e-9, 1.0, 1e9])), ..sound.clone() },
-        Capture { as_shot: Some(darkroot_photo::AsShot::White(darkroot_colour::Xy::new(0.01, 0.98))), ..sound.clone() },
+        Capture {
+            as_shot: Some(darkroot_photo::AsShot::White(darkroot_colour::Xy::new(0.01, 0.98))),
+            ..sound.clone()
+        },
         Capture {
             calibrations: sound
                 .calibrations
                 .iter()
-                .map(|c| darkroot_photo::Calibration { color_matrix: darkroot_colour::Matrix3::zeros(), ..c.clone() })
+                .map(|c| darkroot_photo::Calibration {
+                    color_matrix: darkroot_colour::Matrix3::zeros(),
+                    ..c.clone()
+                })
                 .collect(),
             ..sound.clone()
         },

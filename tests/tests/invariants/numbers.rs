@@ -1,12 +1,12 @@
 //! Every value is finite and in its range.
 
 use darkroot_colour::RgbSpace;
-use darkroot_tests::{bent_profile, camera, develop, exact, layouts, output, pixels, with_light};
 use darkroot_develop::{Bits, Highlights, Look, Output, OutputSpace, Recipe};
 use darkroot_photo::{Capture, Counts, Layout, Size};
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Exposure, Scene};
+use darkroot_tests::{bent_profile, camera, develop, exact, layouts, output, pixels, with_light};
 
 const SIZE: Size = Size { width: 48, height: 32 };
 const LOOKS: [Look; 4] = [Look::Neutral, Look::Vivid, Look::Flat, Look::Linear];
@@ -117,7 +117,8 @@ fn camera_rgb_is_the_balanced_samples_themselves() {
     let Counts::F32(mosaic) = &capture.counts else { panic!("exact captures are floating-point") };
     let output = Output { space: OutputSpace::Camera, bits: Bits::Float };
     let plan =
-        darkroot_develop::plan(&capture, None, &Recipe { look: Look::Linear, output, ..Recipe::default() }).unwrap();
+        darkroot_develop::plan(&capture, None, &Recipe { look: Look::Linear, output, ..Recipe::default() })
+            .unwrap();
     let picture = pixels(&plan.render(&capture));
     for (pixel, seen) in picture.iter().zip(mosaic.samples.chunks_exact(3)) {
         for c in 0..3 {

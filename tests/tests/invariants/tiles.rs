@@ -1,12 +1,12 @@
 //! The picture does not depend on the number of threads or on the tiles (architecture, invariant 3).
 
 use darkroot_colour::RgbSpace;
-use darkroot_tests::{bent_profile, camera, layouts, output};
 use darkroot_develop::{Balance, Bits, Crop, Demosaic, Exposure as Brightness, Highlights, Look, Recipe};
 use darkroot_photo::{Capture, Layout, Orientation, Picture, Size};
 use darkroot_profile::Profile;
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene};
+use darkroot_tests::{bent_profile, camera, layouts, output};
 
 /// Odd, so that no tile and no filter array fits.
 const SIZE: Size = Size { width: 53, height: 37 };

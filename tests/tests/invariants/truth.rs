@@ -2,13 +2,13 @@
 
 use darkroot_colour::difference::de2000;
 use darkroot_colour::{RgbSpace, Spectrum, Vector3, Xyz, white};
-use darkroot_tests::{camera, develop, exact, lab, layouts, mean, measuring, root};
 use darkroot_develop::{Bits, CameraMatrix, Output, OutputSpace, Recipe};
 use darkroot_photo::{Capture, Orientation, Rect, Size};
 use darkroot_raw::{Decoder, Limits};
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene, chart, dng, nef};
+use darkroot_tests::{camera, develop, exact, lab, layouts, mean, measuring, root};
 
 const SIZE: Size = Size { width: 360, height: 240 };
 

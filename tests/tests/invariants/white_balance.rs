@@ -3,12 +3,12 @@
 use darkroot_colour::difference::de2000;
 use darkroot_colour::temperature::{Temperature, daylight_xy};
 use darkroot_colour::{RgbSpace, Spectrum, Xy, white};
-use darkroot_tests::{camera, develop, exact, flat_grey, lab, mean, measuring, output, pixels, with_light};
 use darkroot_develop::{Balance, Bits, Crop, Error, Recipe};
 use darkroot_photo::{AsShot, Capture, Layout, Orientation, Rect, Size};
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Camera, Exposure, Scene};
+use darkroot_tests::{camera, develop, exact, flat_grey, lab, mean, measuring, output, pixels, with_light};
 
 const SIZE: Size = Size { width: 360, height: 240 };
 
@@ -137,12 +137,14 @@ fn a_spot_on_the_grey_card_is_the_neutral_in_every_orientation() {
 #[test]
 fn a_spot_counts_from_the_corner_of_what_is_shown() {
     let mut capture = still_life(day(), Orientation::Upright);
-    let whole = darkroot_develop::plan(&capture, None, &Recipe { balance: spot(), ..Recipe::default() }).unwrap();
+    let whole =
+        darkroot_develop::plan(&capture, None, &Recipe { balance: spot(), ..Recipe::default() }).unwrap();
     let (dx, dy) = (10, 6);
     capture.default_crop = Rect { x: dx, y: dy, width: SIZE.width - 2 * dx, height: SIZE.height - 2 * dy };
     let Balance::Spot { x, y, side } = spot() else { panic!("a spot") };
     let moved = Balance::Spot { x: x - dx, y: y - dy, side };
-    let cropped = darkroot_develop::plan(&capture, None, &Recipe { balance: moved, ..Recipe::default() }).unwrap();
+    let cropped =
+        darkroot_develop::plan(&capture, None, &Recipe { balance: moved, ..Recipe::default() }).unwrap();
     assert_eq!(whole.multipliers, cropped.multipliers);
     let recipe = Recipe { balance: spot(), crop: Crop::Active, ..Recipe::default() };
     assert_eq!(darkroot_develop::plan(&capture, None, &recipe).unwrap().multipliers, whole.multipliers);
@@ -264,7 +266,8 @@ fn a_file_without_a_white_balance_gets_one_from_the_picture_and_says_so() {
     let plan = darkroot_develop::plan(&capture, None, &Recipe::default()).unwrap();
     assert!(plan.notes.iter().any(|n| n.contains("estimated")), "{:?}", plan.notes);
     let auto =
-        darkroot_develop::plan(&capture, None, &Recipe { balance: Balance::Auto, ..Recipe::default() }).unwrap();
+        darkroot_develop::plan(&capture, None, &Recipe { balance: Balance::Auto, ..Recipe::default() })
+            .unwrap();
     assert_eq!(plan.multipliers, auto.multipliers);
 }
 

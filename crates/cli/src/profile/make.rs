@@ -221,11 +221,13 @@ fn say_light(light: &MadeLight) {
         let kind = compared.kind.to_string();
         match &compared.result {
             Ok(f) => {
-                let pair =
-                    |e: Option<darkroot_profile::Errors>| match e.map(|e| e.de2000).filter(|s| s.max.is_finite()) {
-                        Some(s) => format!("{:5.2} / {:5.2}", s.mean, s.max),
-                        None => "not determined".to_owned(),
-                    };
+                let pair = |e: Option<darkroot_profile::Errors>| match e
+                    .map(|e| e.de2000)
+                    .filter(|s| s.max.is_finite())
+                {
+                    Some(s) => format!("{:5.2} / {:5.2}", s.mean, s.max),
+                    None => "not determined".to_owned(),
+                };
                 crate::say(format_args!(
                     "  {mark} {kind:13} {}   {}",
                     pair(f.training),

@@ -5,8 +5,8 @@ use std::io::Write as _;
 
 use anyhow::Result;
 use clap::Args;
-use darkroot_colour::{Lab, white};
 use darkroot::store::Found;
+use darkroot_colour::{Lab, white};
 use darkroot_profile::{Calibration, Errors, Model, polynomial};
 
 use crate::Outcome;
@@ -72,7 +72,9 @@ fn describe(text: &mut String, calibration: &Calibration) {
         let _ = writeln!(text, "  {:14}{:>28}   {:>28}", "", "dE2000 mean median 95 % max", "dE*uv");
     }
     for (label, Errors { de2000, de_uv }) in sets.into_iter().filter_map(|(l, e)| Some((l, e?))) {
-        let four = |s: darkroot_profile::Summary| format!("{:7.2}{:7.2}{:7.2}{:7.2}", s.mean, s.median, s.p95, s.max);
+        let four = |s: darkroot_profile::Summary| {
+            format!("{:7.2}{:7.2}{:7.2}{:7.2}", s.mean, s.median, s.p95, s.max)
+        };
         let _ = writeln!(text, "  {label:14}{}   {}", four(de2000), four(de_uv));
     }
     terms(text, &calibration.model);

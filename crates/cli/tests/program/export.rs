@@ -102,7 +102,8 @@ fn a_raw_file_of_the_camera_gives_the_neutral() {
     let read = Dcp::read(&desk.read("a.dcp")).unwrap();
     assert_eq!((read.camera.as_str(), read.lights.len()), ("Darkroot Simulated One", 1));
     let d65 = darkroot_colour::illuminant::Illuminant::by_name("D65").unwrap().spectrum();
-    let real = Vector3::from(Camera::simulated_one().response(&darkroot_colour::Spectrum::constant(1.0), &d65));
+    let real =
+        Vector3::from(Camera::simulated_one().response(&darkroot_colour::Spectrum::constant(1.0), &d65));
     let found = read.lights[0].color_matrix * Vector3::from(white::D65_XY.xyz());
     assert!((found / found.max() - real / real.max()).amax() < 0.03, "{found} is not {real}");
 

@@ -73,7 +73,9 @@ fn the_hash_of_the_samples_is_that_of_the_library() {
     let desk = Desk::with_dng();
     desk.put("b.nef", small_nef());
     for (name, bytes) in [("a.dng", small_dng()), ("b.nef", small_nef())] {
-        let capture = darkroot_raw::decode(bytes, darkroot_raw::Decoder::Flashraw, &darkroot_raw::Limits::default()).unwrap();
+        let capture =
+            darkroot_raw::decode(bytes, darkroot_raw::Decoder::Flashraw, &darkroot_raw::Limits::default())
+                .unwrap();
         let right = format!("{:016x}", darkroot_raw::samples_hash(&capture.counts));
         assert_eq!(inspected(&desk, &["--samples-hash", name])["samples_hash"], right.as_str());
         assert!(desk.run(&["inspect", "--samples-hash", name]).out.contains(&right));

@@ -1,8 +1,8 @@
 //! What the camera wrote about the shot is in the picture, and what no longer holds is not.
 
-use exif::{Exif, In, Reader, Tag, Value};
 use darkroot_photo::Orientation;
 use darkroot_photo::metadata::{Directory, Value as Field, tag};
+use exif::{Exif, In, Reader, Tag, Value};
 
 use super::*;
 

@@ -156,8 +156,11 @@ fn colours_through_a_profile_from_spectra_are_nearer_than_by_the_matrix() {
     let d50 = darkroot_colour::white::D50;
     let error = |colours: Vec<[f64; 3]>| {
         let pairs = colours.into_iter().zip(&truth);
-        let sum: f64 =
-            pairs.map(|(c, t)| darkroot_colour::difference::de2000(darkroot_colour::Xyz::from(c).lab(d50), t.lab(d50))).sum();
+        let sum: f64 = pairs
+            .map(|(c, t)| {
+                darkroot_colour::difference::de2000(darkroot_colour::Xyz::from(c).lab(d50), t.lab(d50))
+            })
+            .sum();
         sum / 24.0
     };
     let by_matrix: Vec<[f64; 3]> =

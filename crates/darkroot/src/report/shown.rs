@@ -73,7 +73,13 @@ fn jpeg(view: &View, calibrated: &Calibrated, bin: usize) -> Vec<u8> {
     let mut out = Cursor::new(Vec::new());
     let options = darkroot_encode::Options { quality: 85, ..darkroot_encode::Options::default() };
     // In memory, of a picture of ordinary size: nothing that could fail. A missing picture would be seen.
-    let _ = darkroot_encode::write(&picture, darkroot_encode::Format::Jpeg, &options, &Metadata::default(), &mut out);
+    let _ = darkroot_encode::write(
+        &picture,
+        darkroot_encode::Format::Jpeg,
+        &options,
+        &Metadata::default(),
+        &mut out,
+    );
     out.into_inner()
 }
 

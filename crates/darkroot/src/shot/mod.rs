@@ -140,7 +140,8 @@ pub fn open(
         }
     }
 
-    let expected: Vec<darkroot_colour::Xyz> = colours.iter().map(darkroot_chart::ReferenceColour::xyz_d50).collect();
+    let expected: Vec<darkroot_colour::Xyz> =
+        colours.iter().map(darkroot_chart::ReferenceColour::xyz_d50).collect();
     let places = darkroot_chart::windows::places(layout);
     let by_hand = |i: usize| options.exclude.iter().any(|e| e.eq_ignore_ascii_case(names[i]));
     let used: Vec<bool> =
@@ -272,6 +273,7 @@ fn check_chart(layout: &Layout, colours: &[darkroot_chart::ReferenceColour]) -> 
     if mean <= MOST {
         return Ok(());
     }
-    let fault = darkroot_chart::reference::ReferenceError::OtherChart { chart: layout.title.clone(), off: mean };
+    let fault =
+        darkroot_chart::reference::ReferenceError::OtherChart { chart: layout.title.clone(), off: mean };
     Err(format!("of the reference: {fault}"))
 }

@@ -1,0 +1,22 @@
+//! What a person can do about an error, in words of this program: its options and commands.
+//!
+//! Libraries say what is wrong; they know nothing of options. A file here for each part of the program turns its
+//! errors into a hint.
+
+mod batch;
+mod charts;
+
+use std::error::Error;
+
+/// An error with its hint: `FILE: exists already; add `--overwrite` to replace it`.
+pub(crate) fn words(error: &(dyn Error + 'static)) -> String {
+    match of(error) {
+        Some(hint) => format!("{error}; {hint}"),
+        None => error.to_string(),
+    }
+}
+
+/// The hint for an error, where there is one.
+fn of(error: &(dyn Error + 'static)) -> Option<String> {
+    batch::hint(error).or_else(|| charts::hint(error))
+}
