@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // Helpers of tests; a panic is a failed test.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use darkroot_colour::{Lab, RgbSpace, Spectrum, Vector3, Xyz, white};
-use darkroot_develop::{Bits, Look, Output, OutputSpace, Recipe};
+use darkroot_develop::{Analysis, Bits, Cancel, Look, Output, OutputSpace, Plan, Recipe, Scale};
 use darkroot_photo::{
     BlackLevel, Capture, Counts, Layout, Mosaic, Picture, PictureSpace, Rect, Samples, Size, WhiteLevel,
 };
@@ -26,6 +27,28 @@ pub fn real_files(folder: &str) -> Option<PathBuf> {
         eprintln!("skipped: DARKROOT_DATA is not set");
     }
     found
+}
+
+/// A plan for a capture that nothing is known of yet.
+///
+/// # Errors
+/// What does not fit.
+pub fn plan(
+    capture: &Capture,
+    profile: Option<&Profile>,
+    recipe: &Recipe,
+) -> Result<Plan, darkroot_develop::Error> {
+    darkroot_develop::plan(&Analysis::deferred(Arc::new(capture.clone())), profile, recipe)
+}
+
+/// The whole picture of a plan.
+pub fn rendered(plan: &Plan) -> Picture {
+    plan.render(plan.whole(Scale::FULL), &Cancel::default()).unwrap()
+}
+
+/// The whole picture of a plan, made in tiles of this size.
+pub fn rendered_in_tiles(plan: &Plan, columns: usize, rows: usize) -> Picture {
+    plan.render_in_tiles(plan.whole(Scale::FULL), &Cancel::default(), columns, rows).unwrap()
 }
 
 /// The simulated camera with another filter array, without a margin around its crop.
@@ -149,7 +172,7 @@ pub fn output(space: RgbSpace, bits: Bits) -> Output {
 
 /// Plans and renders.
 pub fn develop(capture: &Capture, profile: Option<&Profile>, recipe: &Recipe) -> Picture {
-    darkroot_develop::plan(capture, profile, recipe).unwrap().render(capture)
+    rendered(&plan(capture, profile, recipe).unwrap())
 }
 
 /// Pixels as numbers, 0 = black, 1 = white.

@@ -113,16 +113,14 @@ pub enum Error {
     NoLight,
     /// The profile is for another camera.
     #[error(
-        "{path}: is a profile for {of}, but {input} was taken with {camera}; choose another `--profile`, or add the \
-         camera to its `aliases` if they are the same", path = path.display(), input = input.display()
+        "{path}: is a profile for {of}, but the picture was taken with {camera}; choose another, or add the camera to its \
+         `aliases` if they are the same", path = path.display()
     )]
     OtherCamera {
         /// The profile's file.
         path: PathBuf,
         /// The camera of the profile.
         of: String,
-        /// The raw file.
-        input: PathBuf,
         /// The camera of the raw file.
         camera: String,
     },
@@ -163,6 +161,12 @@ pub enum Error {
     /// The file has no embedded preview.
     #[error("{path}: has no embedded JPEG preview; develop it instead", path = path.display())]
     NoPreview {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Somebody cancelled it.
+    #[error("{path}: was cancelled", path = path.display())]
+    Cancelled {
         /// The file.
         path: PathBuf,
     },

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use darkroot_develop::{CameraMatrix, Survey};
+use darkroot_colour::temperature::Temperature;
+use darkroot_develop::Histogram;
 use darkroot_photo::metadata::{Directory, Metadata, tag};
 use darkroot_photo::{AsShot, Calibration, Capture, Layout};
 use serde::Serialize;
 
 use crate::files;
+use crate::photo::Photo;
 use crate::store::ProfileStore;
 use crate::{Error, Settings};
 
@@ -115,23 +117,21 @@ pub fn inspect(
     store: &ProfileStore,
     samples_hash: bool,
 ) -> Result<Inspection, Error> {
-    let bytes = files::read(input)?;
-    let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
+    let photo = Photo::open_with(&files::read(input)?, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.to_owned(), source })?;
-    drop(bytes);
-    let Survey { saturation, clipped, histogram, .. } = darkroot_develop::survey(&capture);
+    let (capture, analysis) = (photo.capture(), photo.analyse_as_asked());
+    let saturation = analysis.survey().saturation;
+    let Histogram { bins, clipped } = darkroot_develop::histogram(capture, analysis.light(), saturation);
+    let matrix = analysis.matrix();
     let neutral = match capture.as_shot {
         Some(AsShot::Neutral(n)) => Some(n),
-        Some(AsShot::White(xy)) => CameraMatrix::of(&capture).and_then(|m| m.neutral_of(xy)),
+        Some(AsShot::White(xy)) => matrix.and_then(|m| m.neutral_of(xy)),
         None => None,
     };
-    let white = neutral.and_then(|n| {
-        let matrix = CameraMatrix::of(&capture)?;
-        Some(darkroot_colour::temperature::Temperature::of(matrix.white_of(n)))
-    });
+    let white = neutral.zip(matrix).map(|(n, matrix)| Temperature::of(matrix.white_of(n)));
     let rect = |r: darkroot_photo::Rect| [r.x, r.y, r.width, r.height];
     let size = capture.counts.size();
-    let (hash, mean) = if samples_hash { hash_and_mean(&capture) } else { (None, None) };
+    let (hash, mean) = if samples_hash { hash_and_mean(capture) } else { (None, None) };
     Ok(Inspection {
         input: input.to_owned(),
         camera: capture.camera.name(),
@@ -161,10 +161,10 @@ pub fn inspect(
         shot: shot(&capture.metadata),
         saturation,
         clipped,
-        histogram: histogram.iter().map(|h| h.to_vec()).collect(),
+        histogram: bins.iter().map(|h| h.to_vec()).collect(),
         samples_hash: hash,
         samples_mean: mean,
-        notes: capture.notes,
+        notes: capture.notes.clone(),
     })
 }
 

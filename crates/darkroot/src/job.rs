@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use darkroot_develop::{Colours, OutputSpace, Recipe};
+use darkroot_develop::{Cancel, Cancelled, Colours, OutputSpace, Plan, Recipe, Scale};
 use darkroot_encode::Format;
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 use darkroot_photo::{Capture, Picture, PictureSpace};
@@ -12,8 +12,9 @@ use darkroot_profile::Profile;
 use serde::Serialize;
 
 use crate::files::{self, Failed};
-use crate::settings::{Engine, ProfileChoice, Settings};
-use crate::store::{self, ProfileStore};
+use crate::photo::Photo;
+use crate::settings::{Engine, Settings};
+use crate::store::ProfileStore;
 use crate::{Error, Job, VERSION};
 
 /// How far a file has come.
@@ -117,17 +118,19 @@ pub(crate) fn develop_bytes(
     let format = format_of(output, settings);
     let recipe =
         settings.resolve(format).map_err(|e| Error::Write { path: output.clone(), reason: e.to_string() })?;
-    let capture = decode(input, read()?, settings)?;
+    let photo = Photo::open_with(&read()?, settings.decoder, &settings.limits)
+        .map_err(|source| Error::Raw { path: input.clone(), source })?;
 
     step(Step::Develop);
     let (picture, mut report) = match settings.engine {
-        Engine::Darkroot => own_engine(input, &capture, settings, store, &recipe)?,
-        Engine::Imagepipe => second_engine(input, &capture, &recipe)?,
+        Engine::Darkroot => own_engine(input, &photo, settings, store, &recipe)?,
+        Engine::Imagepipe => second_engine(input, photo.capture(), &recipe)?,
     };
+    let capture = photo.capture();
     let mut notes = capture.notes.clone();
-    let metadata = metadata_for(&capture, &picture);
+    let metadata = metadata_for(capture, &picture);
     seen(&capture.camera, &picture);
-    drop(capture);
+    drop(photo);
 
     step(Step::Write);
     let write = |out: &mut io::BufWriter<&std::fs::File>| {
@@ -154,45 +157,52 @@ pub(crate) fn develop_bytes(
     })
 }
 
+/// A finished picture as the bytes of a file, with its colour space and the metadata of the capture that it is from.
+///
+/// # Errors
+/// A format that cannot hold the picture.
+pub fn encode_picture(
+    picture: &Picture,
+    format: Format,
+    capture: &Capture,
+) -> Result<Vec<u8>, darkroot_encode::Error> {
+    let mut out = io::Cursor::new(Vec::new());
+    let metadata = metadata_for(capture, picture);
+    darkroot_encode::write(picture, format, &darkroot_encode::Options::default(), &metadata, &mut out)?;
+    Ok(out.into_inner())
+}
+
 /// The format of an output: the one asked for, else by its ending.
 fn format_of(output: &Path, settings: &Settings) -> Format {
     let by_name = || output.extension().and_then(|e| e.to_str()).and_then(Format::from_extension);
     settings.format.or_else(by_name).unwrap_or_else(|| settings.default_format())
 }
 
-fn decode(input: &Path, bytes: Vec<u8>, settings: &Settings) -> Result<Capture, Error> {
-    darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
-        .map_err(|source| Error::Raw { path: input.to_owned(), source })
-}
-
 fn own_engine(
     input: &Path,
-    capture: &Capture,
+    photo: &Photo,
     settings: &Settings,
     store: &ProfileStore,
     recipe: &Recipe,
 ) -> Result<(Picture, Report), Error> {
-    let chosen = choose_profile(input, capture, settings, store)?;
-    let (profile, place) = chosen.map_or((None, None), |(p, place)| (Some(p), Some(place)));
-    let plan = darkroot_develop::plan(capture, profile.as_ref(), recipe)
+    let chosen = store.for_camera(&photo.capture().camera, &settings.profile)?;
+    let profile = chosen.as_ref().map(|c| c.profile.as_ref());
+    let plan = darkroot_develop::plan(&photo.analyse_as_asked(), profile, recipe)
         .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
-    let picture = plan.render(capture);
+    let whole = plan.whole(Scale::FULL);
+    let picture = plan
+        .render(whole, &Cancel::default())
+        .map_err(|Cancelled| Error::Cancelled { path: input.to_owned() })?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
-    let colours = match (plan.colours, profile.as_ref()) {
-        _ if camera_output => "none (camera RGB)".to_owned(),
-        (Colours::Profile, Some(p)) => {
-            let light = p.calibrations().iter().map(|c| c.light.name.as_str()).collect::<Vec<_>>().join(", ");
-            format!("profile for {} ({light})", p.camera().name())
-        }
-        (Colours::CameraMatrix, _) if capture.source.format == "DNG" => "matrix in the file".to_owned(),
-        (Colours::CameraMatrix, _) => "camera matrix".to_owned(),
-        (Colours::Grey, _) => "monochrome".to_owned(),
-        _ => "assumed".to_owned(),
-    };
+    let capture = photo.capture();
     let report = Report {
         engine: "darkroot".to_owned(),
-        colours,
-        profile: place.filter(|_| !camera_output),
+        colours: if camera_output {
+            "none (camera RGB)".to_owned()
+        } else {
+            colours(&plan, capture, profile)
+        },
+        profile: chosen.map(|c| c.place.into_owned()).filter(|_| !camera_output),
         kelvin: plan.white.map(|w| w.kelvin),
         tint: plan.white.map(|w| w.tint()),
         multipliers: plan.multipliers,
@@ -204,30 +214,17 @@ fn own_engine(
     Ok((picture, report))
 }
 
-/// The first profile that fits, with the place it is from.
-fn choose_profile(
-    input: &Path,
-    capture: &Capture,
-    settings: &Settings,
-    store: &ProfileStore,
-) -> Result<Option<(Profile, String)>, Error> {
-    match &settings.profile {
-        ProfileChoice::Matrix => Ok(None),
-        ProfileChoice::Automatic => {
-            Ok(store.find(&capture.camera).map(|f| (f.profile.clone(), f.place.clone())))
+/// What gave the colours, in words.
+fn colours(plan: &Plan, capture: &Capture, profile: Option<&Profile>) -> String {
+    match (plan.colours, profile) {
+        (Colours::Profile, Some(p)) => {
+            let light = p.calibrations().iter().map(|c| c.light.name.as_str()).collect::<Vec<_>>().join(", ");
+            format!("profile for {} ({light})", p.camera().name())
         }
-        ProfileChoice::File(path) => {
-            let profile = store::read(path)?;
-            if !store::is_for(&profile, &capture.camera) {
-                return Err(Error::OtherCamera {
-                    path: path.clone(),
-                    of: profile.camera().name(),
-                    input: input.to_owned(),
-                    camera: capture.camera.name(),
-                });
-            }
-            Ok(Some((profile, path.display().to_string())))
-        }
+        (Colours::CameraMatrix, _) if capture.source.format == "DNG" => "matrix in the file".to_owned(),
+        (Colours::CameraMatrix, _) => "camera matrix".to_owned(),
+        (Colours::Grey, _) => "monochrome".to_owned(),
+        _ => "assumed".to_owned(),
     }
 }
 

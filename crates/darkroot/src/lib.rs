@@ -25,11 +25,14 @@ pub use recipe::{Effective, Key, Layer, Layers, Origin, RecipeError};
 
 pub mod batch;
 
+pub mod photo;
+pub use photo::{Photo, PlanError};
+
 pub mod naming;
 pub use naming::{Job, NamingError, Target, plan_outputs};
 
 pub mod job;
-pub use job::{Report, Step, develop};
+pub use job::{Report, Step, develop, encode_picture};
 
 pub mod inspect;
 pub use inspect::{Inspection, inspect, save_preview};
@@ -51,7 +54,7 @@ pub mod calibrate;
 pub use calibrate::{Calibrated, MeasuredPatch, calibrate};
 
 pub mod store;
-pub use store::ProfileStore;
+pub use store::{ChosenProfile, ProfileStore};
 
 pub mod error;
 pub use error::Error;
@@ -77,7 +80,9 @@ pub use files::{abandon, write_text};
 #[cfg(feature = "imagepipe")]
 mod pipe;
 
+pub use darkroot_develop::{Analysis, Cancel, Cancelled, Plan, Recipe, Scale, View};
 pub use darkroot_encode::{ChromaSubsampling, Format, Options as EncodeOptions};
+pub use darkroot_raw::{Decoder, Limits};
 
 /// Version of Darkroot, as outputs carry it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

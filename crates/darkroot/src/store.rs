@@ -1,5 +1,6 @@
 //! Where profiles come from: the user's folder first, then those built into the program.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -8,6 +9,7 @@ use darkroot_profile::export::dcp;
 use darkroot_profile::{Profile, ProfileCamera};
 
 use crate::Error;
+use crate::settings::ProfileChoice;
 
 /// Path inside `profiles/` and text of every profile of this build.
 const BUILTIN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/profiles.rs"));
@@ -19,6 +21,15 @@ pub struct Found {
     pub profile: Profile,
     /// Where it is from, in words: a path, or "built in".
     pub place: String,
+}
+
+/// The profile of one photograph, and where it is from, in words.
+#[derive(Debug, Clone)]
+pub struct ChosenProfile<'a> {
+    /// The profile.
+    pub profile: Cow<'a, Profile>,
+    /// A path, or "built in".
+    pub place: Cow<'a, str>,
 }
 
 /// Profiles by camera.
@@ -107,6 +118,36 @@ impl ProfileStore {
         }
         let named = self.entries.iter().filter(|e| e.camera.is("", text)).find_map(Entry::get);
         named.cloned().ok_or_else(|| Error::NoProfile { text: text.to_owned() })
+    }
+
+    /// The profile that gives a camera's colours; `None` where the file's own matrices do.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no usable profile, or is for another camera.
+    pub fn for_camera(
+        &self,
+        camera: &Camera,
+        choice: &ProfileChoice,
+    ) -> Result<Option<ChosenProfile<'_>>, Error> {
+        match choice {
+            ProfileChoice::Matrix => Ok(None),
+            ProfileChoice::Automatic => Ok(self.find(camera).map(|found| ChosenProfile {
+                profile: Cow::Borrowed(&found.profile),
+                place: Cow::Borrowed(&found.place),
+            })),
+            ProfileChoice::File(path) => {
+                let profile = read(path)?;
+                if !is_for(&profile, camera) {
+                    return Err(Error::OtherCamera {
+                        path: path.clone(),
+                        of: profile.camera().name(),
+                        camera: camera.name(),
+                    });
+                }
+                let place = Cow::Owned(path.display().to_string());
+                Ok(Some(ChosenProfile { profile: Cow::Owned(profile), place }))
+            }
+        }
     }
 
     /// All profiles, those of the user first.

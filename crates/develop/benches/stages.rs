@@ -17,10 +17,7 @@ use darkroot_develop::transfer::Encoder;
 use darkroot_develop::{
     Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer,
 };
-use darkroot_photo::{
-    BlackLevel, Camera, CameraSpace, Capture, Cfa, Counts, Layout, Metadata, Mosaic, Orientation, Rect, Rgb,
-    Size, Source, WhiteLevel,
-};
+use darkroot_photo::{BlackLevel, CameraSpace, Capture, Cfa, Counts, Layout, Mosaic, Rgb, Size, WhiteLevel};
 use darkroot_profile::{Order, PlaneModel, RootPolynomial};
 
 const SIZE: Size = Size { width: 1024, height: 512 };
@@ -47,31 +44,8 @@ fn planes<S>() -> Rgb<S> {
 fn capture() -> Capture {
     let samples = (0..SIZE.area()).map(|i| (light(i, SIZE.width) * 15000.0) as u16).collect();
     let layout = Layout::Cfa(Cfa::parse("RGGB").expect("a square array"));
-    Capture {
-        camera: Camera::default(),
-        counts: Counts::U16(Mosaic { size: SIZE, layout, samples }),
-        active_area: Rect::full(SIZE),
-        default_crop: Rect::full(SIZE),
-        orientation: Orientation::Upright,
-        pixel_aspect: 1.0,
-        black: BlackLevel::uniform(512.0),
-        white: WhiteLevel([16383.0; 3]),
-        as_shot: None,
-        balance_applied: false,
-        calibrations: Vec::new(),
-        analog_balance: [1.0; 3],
-        baseline_exposure: 0.0,
-        mosaic_corrections: Vec::new(),
-        picture_corrections: Vec::new(),
-        metadata: Metadata::default(),
-        source: Source {
-            format: String::new(),
-            compression: String::new(),
-            bits: 14,
-            decoder: String::new(),
-        },
-        notes: Vec::new(),
-    }
+    let counts = Counts::U16(Mosaic { size: SIZE, layout, samples });
+    Capture { black: BlackLevel::uniform(512.0), white: WhiteLevel([16383.0; 3]), ..Capture::bare(counts) }
 }
 
 fn model(order: Order) -> PlaneModel {

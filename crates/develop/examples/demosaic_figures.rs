@@ -79,7 +79,7 @@ fn pictures(directory: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
 /// Takes the picture through the array, beyond its edges its mirror image, and demosaics it; encoded values.
 fn develop(original: &RgbImage, cfa: &Cfa, method: Method, curve: TransferCurve) -> Vec<[f64; 3]> {
     let light: Vec<f32> = (0..=255u8).map(|v| curve.decode(f64::from(v) / 255.0) as f32).collect();
-    let border = method.border();
+    let border = method.stage().border;
     let (width, height) = (original.width() as usize, original.height() as usize);
     let size = Size { width: width + 2 * border, height: height + 2 * border };
     let mirrored = |at: usize, length: usize| {
@@ -123,7 +123,7 @@ fn save(result: &[[f64; 3]], (width, height): (u32, u32), path: &Path) -> Result
 
 /// Megapixels a second of one thread: the best of many tiles.
 fn speed(cfa: &Cfa, method: Method) -> f64 {
-    let border = method.border();
+    let border = method.stage().border;
     let size = Size { width: TILE.width + 2 * border, height: TILE.height + 2 * border };
     let samples = (0..size.area()).map(|i| (i * 7919 % 1000) as f32 / 1000.0).collect();
     let mosaic = Mosaic { size, layout: Layout::Cfa(cfa.clone()), samples };

@@ -4,7 +4,7 @@
 //! applied; the capture's notes say so.
 
 use darkroot_photo::correction::{Area, GainMap, Vignette};
-use darkroot_photo::{CameraSpace, Correction, Rect, Rgb, Size};
+use darkroot_photo::{CameraSpace, Correction, Rgb, Size};
 
 /// Where a run of samples lies.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +15,8 @@ pub struct Run {
     pub y: usize,
     /// Samples a pixel.
     pub planes: usize,
+    /// Columns from one pixel to the next: more than 1 in a picture that is made smaller.
+    pub step: usize,
     /// Size of the active area.
     pub active: Size,
 }
@@ -53,7 +55,7 @@ pub fn row(light: &mut [f32], corrections: &[Correction], run: Run) {
             }
             Correction::Vignette(vignette) => {
                 for (i, pixel) in light.chunks_exact_mut(run.planes).enumerate() {
-                    let gain = vignette_gain(vignette, run.x + i, run.y, run.active);
+                    let gain = vignette_gain(vignette, run.x + i * run.step, run.y, run.active);
                     for v in pixel {
                         *v *= gain;
                     }
@@ -64,8 +66,15 @@ pub fn row(light: &mut [f32], corrections: &[Correction], run: Run) {
     }
 }
 
-/// Applies corrections to a demosaiced picture whose top left pixel lies at `place` of the active area.
-pub fn picture(picture: &mut Rgb<CameraSpace>, corrections: &[Correction], place: Rect, active: Size) {
+/// Applies corrections to a demosaiced picture whose top left pixel lies in column `x` of row `y` of the active area, and
+/// each next one `step` pixels on.
+pub fn picture(
+    picture: &mut Rgb<CameraSpace>,
+    corrections: &[Correction],
+    (x, y): (usize, usize),
+    step: usize,
+    active: Size,
+) {
     let width = picture.size().width;
     for (plane, values) in picture.planes_mut().into_iter().enumerate() {
         let of_plane: Vec<Correction> = corrections.iter().filter_map(|c| for_plane(c, plane)).collect();
@@ -73,7 +82,7 @@ pub fn picture(picture: &mut Rgb<CameraSpace>, corrections: &[Correction], place
             continue;
         }
         for (i, light) in values.chunks_exact_mut(width).enumerate() {
-            row(light, &of_plane, Run { x: place.x, y: place.y + i, planes: 1, active });
+            row(light, &of_plane, Run { x, y: y + i * step, planes: 1, step, active });
         }
     }
 }
@@ -105,7 +114,20 @@ fn for_plane(correction: &Correction, plane: usize) -> Option<Correction> {
 /// Calls `f(value, column, plane)` for each sample of the run that the area names.
 fn each(light: &mut [f32], area: &Area, run: Run, f: impl Fn(f32, usize, usize) -> f32) {
     let rect = area.rect;
-    if run.y < rect.y || run.y >= rect.bottom() || !(run.y - rect.y).is_multiple_of(area.row_pitch) {
+    if run.y < rect.y || run.y >= rect.bottom() {
+        return;
+    }
+    if run.step > 1 {
+        // A pixel of a smaller picture stands for rows and columns of every pitch.
+        for (i, v) in light.iter_mut().enumerate() {
+            let x = run.x + i * run.step;
+            if (rect.x..rect.right()).contains(&x) {
+                *v = f(*v, x, area.plane);
+            }
+        }
+        return;
+    }
+    if !(run.y - rect.y).is_multiple_of(area.row_pitch) {
         return;
     }
     let pixels = light.len() / run.planes;
@@ -181,11 +203,12 @@ fn vignette_gain(vignette: &Vignette, x: usize, y: usize, active: Size) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use darkroot_photo::Rect;
 
     const ACTIVE: Size = Size { width: 8, height: 4 };
 
     fn run(y: usize) -> Run {
-        Run { x: 0, y, planes: 1, active: ACTIVE }
+        Run { x: 0, y, planes: 1, step: 1, active: ACTIVE }
     }
 
     fn area(x: usize, pitch: usize) -> Area {

@@ -12,10 +12,14 @@ use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 
 use crate::demosaic::{signed_sqrt, signed_square};
 use crate::highlights::{CLIPPED, Treatment};
+use crate::stage::{Stage, WhenSmaller};
 use darkroot_profile::simd::vectorised;
 
 /// Pixels around the result that are looked at.
 pub const BORDER: usize = 5;
+
+/// What it asks of a tile.
+pub const STAGE: Stage = Stage { name: "fringe", border: BORDER, when_smaller: WhenSmaller::Skipped };
 
 /// How near a highlight is, by columns or rows away: beyond three, leaks fade.
 const NEAR: [f32; BORDER + 1] = [1.0, 1.0, 1.0, 1.0, 0.7, 0.35];

@@ -12,8 +12,13 @@ use std::array::from_fn;
 use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 use darkroot_profile::simd::vectorised;
 
+use crate::stage::{Stage, WhenSmaller};
+
 /// Pixels around a sample that rebuilding looks at.
 pub const BORDER: usize = 2;
+
+/// What it asks of a tile.
+pub const STAGE: Stage = Stage { name: "highlights", border: BORDER, when_smaller: WhenSmaller::Same };
 
 /// Share of the clipping level at which a sample counts as clipped: noise makes saturated samples scatter.
 pub const CLIPPED: f32 = 0.985;

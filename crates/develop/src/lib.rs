@@ -19,22 +19,39 @@
 pub mod recipe;
 pub use recipe::{Balance, Bits, Crop, Demosaic, Exposure, Highlights, Look, Output, OutputSpace, Recipe};
 
-pub mod plan;
-pub use plan::{Colours, Error, Plan, plan};
+pub mod error;
+pub use error::{Error, SpotFault};
 
+pub mod light;
+pub use light::LinearLight;
+
+pub mod analysis;
+pub use analysis::Analysis;
+
+pub mod plan;
+pub use plan::{Colours, Plan, plan};
+
+pub mod view;
+pub use view::{Cancel, Cancelled, Scale, View};
+
+pub mod stage;
+
+// What is looked for in the whole frame.
 pub mod frame;
 pub use frame::{Frame, frame};
-
+pub mod histogram;
+pub use histogram::{Histogram, histogram};
 pub mod noise;
 pub mod saturation;
-
 pub mod survey;
-pub use survey::{Survey, survey};
-
+pub use survey::Survey;
 pub mod white;
 pub use white::CameraMatrix;
 
+mod auto_exposure;
+mod neutral;
 mod render;
+mod tile;
 
 // The stages, in the order of the pipeline.
 pub mod balance;
@@ -48,5 +65,3 @@ pub mod highlights;
 pub mod level;
 pub mod tone;
 pub mod transfer;
-
-mod tile;

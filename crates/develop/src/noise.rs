@@ -3,12 +3,11 @@
 //! The variance is that of the square roots of balanced samples, the domain of demosaicing. Shot noise is even
 //! there (Anscombe, Biometrika 35, 1948); read noise lets it rise in the shadows.
 
-use darkroot_photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic};
+use darkroot_photo::{Capture, Cfa, Filter, Layout};
 use rayon::prelude::*;
 
-use crate::corrections::{self, Run};
 use crate::demosaic::{signed_sqrt, signed_square};
-use crate::level::Levels;
+use crate::light::LinearLight;
 
 /// Half octaves of brightness from 2^-16 to 2^8 of the picture's mean. Relative to the mean, so that the same picture
 /// with more light has the same noise for its brightness.
@@ -45,31 +44,22 @@ impl Noise {
         self.variances[bin(brightness * self.scale)]
     }
 
-    /// Measures the noise of a Bayer capture; other sensors have none here.
-    pub(crate) fn measure(
-        capture: &Capture,
-        levels: &Levels,
-        corrections: &[darkroot_photo::Correction],
-        multipliers: [f32; 3],
-    ) -> Self {
-        let windows = match &capture.counts {
-            Counts::U16(m) => windows(capture, m, levels, corrections, multipliers),
-            Counts::F32(m) => windows(capture, m, levels, corrections, multipliers),
-        };
-        Self::of_windows(windows)
-    }
-
-    fn of_windows(windows: Vec<Window>) -> Self {
-        let mean = windows.iter().map(|w| f64::from(w.brightness)).sum::<f64>() / windows.len().max(1) as f64;
+    /// The noise of a capture after balancing with these multipliers, from what its windows show; none where there are
+    /// no windows.
+    pub(crate) fn of(windows: &[Window], multipliers: [f32; 3]) -> Self {
+        let balanced: Vec<Balanced> = windows.iter().map(|w| w.balanced(multipliers)).collect();
+        let mean =
+            balanced.iter().map(|w| f64::from(w.brightness)).sum::<f64>() / balanced.len().max(1) as f64;
         if mean.is_nan() || mean <= 0.0 {
             return Self::NONE;
         }
         let scale = (1.0 / mean) as f32;
-        let mut bins: Vec<Vec<Window>> = (0..BINS).map(|_| Vec::new()).collect();
-        for window in windows {
-            bins[bin(window.brightness * scale)].push(window);
+        let mut bins: Vec<Vec<(f32, &Window)>> = (0..BINS).map(|_| Vec::new()).collect();
+        for (balanced, window) in balanced.iter().zip(windows) {
+            bins[bin(balanced.brightness * scale)].push((balanced.roughness, window));
         }
-        let known: Vec<Option<[f32; 3]>> = bins.into_iter().map(flat).collect();
+        let known: Vec<Option<[f32; 3]>> =
+            bins.iter_mut().map(|windows| flat(windows, multipliers)).collect();
         let nearest = |i: usize| {
             let by_distance = (0..BINS).filter(|&j| known[j].is_some()).min_by_key(|&j| j.abs_diff(i));
             by_distance.and_then(|j| known[j]).unwrap_or_default()
@@ -85,18 +75,21 @@ fn bin(brightness: f32) -> usize {
     (half_octave.saturating_sub(FIRST_EXPONENT << 1) as usize).min(BINS - 1)
 }
 
-/// Variances in the flat ones among windows of one brightness. Near black the spread of the roots overstates the
-/// bias, elsewhere shading and texture do: the least of the estimates counts.
-fn flat(mut windows: Vec<Window>) -> Option<[f32; 3]> {
+/// Variances, balanced, in the flat ones among windows of one brightness, which come with their roughness. Near black
+/// the spread of the roots overstates the bias, elsewhere shading and texture do: the least of the estimates counts.
+fn flat(windows: &mut [(f32, &Window)], multipliers: [f32; 3]) -> Option<[f32; 3]> {
     if windows.len() < FEWEST_WINDOWS {
         return None;
     }
-    let roughness = |w: &Window| w.bend_x.iter().chain(&w.bend_y).sum::<f32>();
-    windows.sort_by(|a, b| roughness(a).total_cmp(&roughness(b)));
     let rank = |share: f64| (share * windows.len() as f64) as usize;
-    let chosen = &windows[rank(FLAT_RANKS.0)..rank(FLAT_RANKS.1).max(rank(FLAT_RANKS.0) + 1)];
+    let (first, end) = (rank(FLAT_RANKS.0), rank(FLAT_RANKS.1).max(rank(FLAT_RANKS.0) + 1));
+    // The flattest of all up to the last rank, then those among them from the first rank on.
+    let rougher = |a: &(f32, &Window), b: &(f32, &Window)| a.0.total_cmp(&b.0);
+    windows.select_nth_unstable_by(end - 1, rougher);
+    windows[..end].select_nth_unstable_by(first, rougher);
+    let chosen = &windows[first..end];
     let mean = |estimate: fn(&Window) -> [f32; 3], c: usize| {
-        chosen.iter().map(|w| estimate(w)[c]).sum::<f32>() / chosen.len() as f32
+        multipliers[c] * chosen.iter().map(|(_, w)| estimate(w)[c]).sum::<f32>() / chosen.len() as f32
     };
     Some([0, 1, 2].map(|c| {
         let least = mean(|w| w.spread, c).min(mean(|w| w.bend_x, c)).min(mean(|w| w.bend_y, c));
@@ -104,9 +97,11 @@ fn flat(mut windows: Vec<Window>) -> Option<[f32; 3]> {
     }))
 }
 
-/// What one window of the picture shows.
-struct Window {
-    brightness: f32,
+/// What one window of the picture shows, before balancing: which light it is in does not matter yet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Window {
+    /// Sum of the light of each channel.
+    light: [f32; 3],
     /// Mean of the light less the square of the mean root.
     spread: [f32; 3],
     /// Variance of the roots from second differences along rows.
@@ -115,42 +110,50 @@ struct Window {
     bend_y: [f32; 3],
 }
 
-fn windows<T: Copy + Into<f32> + Sync>(
-    capture: &Capture,
-    counts: &Mosaic<T>,
-    levels: &Levels,
-    corrections: &[darkroot_photo::Correction],
-    multipliers: [f32; 3],
-) -> Vec<Window> {
-    let Layout::Cfa(cfa) = &counts.layout else { return Vec::new() };
+/// A window in balanced light.
+struct Balanced {
+    /// Mean of all samples.
+    brightness: f32,
+    roughness: f32,
+}
+
+impl Window {
+    /// Light is multiplied by the multipliers, and so are variances of its square roots.
+    fn balanced(&self, multipliers: [f32; 3]) -> Balanced {
+        let sum = |v: [f32; 3]| v[0] * multipliers[0] + v[1] * multipliers[1] + v[2] * multipliers[2];
+        Balanced {
+            brightness: sum(self.light) / (WINDOW * WINDOW) as f32,
+            roughness: sum(self.bend_x) + sum(self.bend_y),
+        }
+    }
+}
+
+/// Windows of a Bayer capture, spread over the whole picture; none for other sensors.
+pub(crate) fn windows(capture: &Capture, linear: &LinearLight) -> Vec<Window> {
+    let Layout::Cfa(cfa) = capture.counts.layout() else { return Vec::new() };
     let area = capture.active_area;
     if !cfa.is_bayer() || area.width < WINDOW || area.height < WINDOW {
         return Vec::new();
     }
-    // Every so many rows of windows, over the whole picture.
+    // Every so many rows of windows.
     let (columns, rows) = (area.width / WINDOW, area.height / WINDOW);
     let step = (columns * rows).div_ceil(MOST_WINDOWS).max(1);
     let rows: Vec<usize> = (0..rows).step_by(step).collect();
     rows.par_iter()
         .flat_map_iter(|row| {
             let top = area.y + row * WINDOW;
-            let mut light = vec![0f32; columns * WINDOW];
-            let mut strip = Vec::with_capacity(light.len() * WINDOW);
-            for y in top..top + WINDOW {
-                let start = y * counts.size.width + area.x;
-                levels.row(&counts.samples[start..start + light.len()], area.x, y, &mut light);
-                let run = Run { x: 0, y: y - area.y, planes: 1, active: area.size() };
-                corrections::row(&mut light, corrections, run);
-                crate::balance::row(&mut light, &counts.layout, multipliers, area.x, y);
-                strip.extend_from_slice(&light);
+            let width = columns * WINDOW;
+            let mut strip = vec![0f32; width * WINDOW];
+            for (i, light) in strip.chunks_exact_mut(width).enumerate() {
+                linear.row(&capture.counts, area.x, top + i, light);
             }
-            let window = |i: usize| window(&strip, columns * WINDOW, i * WINDOW, cfa, (area.x, top));
+            let window = |i: usize| window(&strip, width, i * WINDOW, cfa, (area.x, top));
             (0..columns).map(window).collect::<Vec<_>>()
         })
         .collect()
 }
 
-/// Brightness and variances of the window that begins in column `left` of a strip.
+/// Light and variances of the window that begins in column `left` of a strip.
 fn window(strip: &[f32], width: usize, left: usize, cfa: &Cfa, (x0, y0): (usize, usize)) -> Window {
     let (mut light, mut roots, mut counts) = ([0f32; 3], [0f32; 3], [0f32; 3]);
     let (mut bend_x, mut bend_y, mut bends) = ([0f32; 3], [0f32; 3], [0f32; 3]);
@@ -179,7 +182,7 @@ fn window(strip: &[f32], width: usize, left: usize, cfa: &Cfa, (x0, y0): (usize,
         (light[c] / n - signed_square(roots[c] / n)) * (n / (n - 1.0))
     };
     Window {
-        brightness: light.iter().sum::<f32>() / (WINDOW * WINDOW) as f32,
+        light,
         spread: [spread(0), spread(1), spread(2)],
         bend_x: [0, 1, 2].map(|c| bend_x[c] / bends[c]),
         bend_y: [0, 1, 2].map(|c| bend_y[c] / bends[c]),
@@ -200,18 +203,18 @@ mod tests {
 
     #[test]
     fn the_flattest_windows_tell_the_noise_and_texture_does_not() {
-        let windows = (0..1000)
+        let windows: Vec<Window> = (0..1000)
             .map(|i| {
                 let variance = if i % 2 == 0 { 0.01 + i as f32 * 1e-3 } else { 1e-4 };
-                let estimate = [2.0 * variance, variance, variance];
-                Window { brightness: 0.2, spread: estimate, bend_x: estimate, bend_y: estimate }
+                let estimate = [variance; 3];
+                Window { light: [5.0, 10.0, 5.0], spread: estimate, bend_x: estimate, bend_y: estimate }
             })
             .collect();
-        let noise = Noise::of_windows(windows);
+        let noise = Noise::of(&windows, [2.0, 1.0, 1.0]);
         let [red, green, _] = noise.at(0.2);
         assert!((green * SELECTION - 1e-4).abs() < 1e-6 && (red / green - 2.0).abs() < 1e-3);
         // Brightnesses that no window has take the nearest.
         assert_eq!(noise.at(0.001), noise.at(0.2));
-        assert_eq!(Noise::of_windows(Vec::new()), Noise::NONE);
+        assert_eq!(Noise::of(&[], [1.0; 3]), Noise::NONE);
     }
 }

@@ -4,10 +4,10 @@
 //! pile up at this ISO. Taken at its word, it leaves clipped highlights unseen and pink. So the picture is asked:
 //! where its brightest samples stand in one heap, there the channel clips.
 
-use darkroot_photo::{Capture, Counts, Layout, Mosaic};
+use darkroot_photo::Capture;
 use rayon::prelude::*;
 
-use crate::level::Levels;
+use crate::light::{LinearLight, channels};
 
 /// Light below this share of the white level is never taken for clipped.
 const LOWEST: f32 = 0.8;
@@ -19,6 +19,9 @@ const BINS: usize = 256;
 /// A heap this close to the white level is at the white level.
 const SAME: f32 = 0.995;
 
+/// Stands for filters of other colours: none of the three.
+pub(crate) const NO_CHANNEL: usize = 3;
+
 /// Fewest samples that make a heap.
 const FEWEST: u64 = 50;
 /// Width of a heap and of the slope below it that it is compared with, in bins: the noise of saturated samples.
@@ -26,54 +29,64 @@ const HEAP: usize = 12;
 /// How much a heap stands above the slope below it.
 const STEEPNESS: u64 = 4;
 
-type Histogram = [[u64; BINS]; 3];
+/// Number of samples of each channel by light, from `LOWEST` on.
+#[derive(Debug, Clone)]
+pub(crate) struct BrightSamples([[u64; BINS]; 3]);
 
-/// Share of the white level at which red, green and blue clip: 1 where the picture shows nothing else.
-pub fn saturation(capture: &Capture, levels: &Levels) -> [f32; 3] {
-    let histogram = match &capture.counts {
-        Counts::U16(counts) => count(capture, counts, levels),
-        Counts::F32(counts) => count(capture, counts, levels),
-    };
-    common(histogram.map(|channel| top_of_heap(&channel)), &histogram)
-}
+impl BrightSamples {
+    pub(crate) fn none() -> Self {
+        Self([[0; BINS]; 3])
+    }
 
-fn count<T: Copy + Into<f32> + Sync>(capture: &Capture, counts: &Mosaic<T>, levels: &Levels) -> Histogram {
-    let (area, planes) = (capture.active_area, counts.layout.planes());
-    let rows: Vec<usize> = (area.y..area.bottom()).collect();
-    let parts: Vec<Histogram> = rows
-        .par_chunks(64)
-        .map(|rows| {
-            let mut histogram = [[0u64; BINS]; 3];
-            let mut light = vec![0f32; area.width * planes];
-            for &y in rows {
-                let start = (y * counts.size.width + area.x) * planes;
-                levels.row(&counts.samples[start..start + light.len()], area.x * planes, y, &mut light);
-                for (i, &v) in light.iter().enumerate().filter(|(_, v)| **v >= LOWEST) {
-                    let channel = match &counts.layout {
-                        Layout::Cfa(cfa) => cfa.at(area.x + i, y).plane(),
-                        Layout::Rgb => Some(i % 3),
-                        Layout::Monochrome => Some(0),
-                    };
-                    let bin = (((v - LOWEST) / BIN) as usize).min(BINS - 1);
-                    if let Some(channel) = channel {
-                        histogram[channel][bin] += 1;
-                    }
-                }
+    /// Counts levelled samples of a row, whose channels repeat.
+    pub(crate) fn count(&mut self, light: &[f32], channels: &[usize]) {
+        for (&v, &channel) in light.iter().zip(channels.iter().cycle()) {
+            if v >= LOWEST
+                && let Some(bins) = self.0.get_mut(channel)
+            {
+                bins[(((v - LOWEST) / BIN) as usize).min(BINS - 1)] += 1;
             }
-            histogram
-        })
-        .collect();
-    parts.into_iter().fold([[0; BINS]; 3], |mut sum, part| {
-        for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
+        }
+    }
+
+    /// Adds what was counted elsewhere.
+    #[must_use]
+    pub(crate) fn and(mut self, other: &Self) -> Self {
+        for (sum, part) in self.0.iter_mut().flatten().zip(other.0.iter().flatten()) {
             *sum += part;
         }
-        sum
-    })
+        self
+    }
+
+    /// Share of the white level at which red, green and blue clip: 1 where the picture shows nothing else.
+    pub(crate) fn saturation(&self) -> [f32; 3] {
+        common(self.0.each_ref().map(top_of_heap), &self.0)
+    }
+}
+
+/// Share of the white level at which red, green and blue of a capture clip.
+pub fn saturation(capture: &Capture, linear: &LinearLight) -> [f32; 3] {
+    let area = capture.active_area;
+    let rows: Vec<usize> = (area.y..area.bottom()).collect();
+    let layout = capture.counts.layout();
+    let parts: Vec<BrightSamples> = rows
+        .par_chunks(64)
+        .map(|rows| {
+            let mut counted = BrightSamples::none();
+            let mut light = vec![0f32; area.width * layout.planes()];
+            for &y in rows {
+                linear.levelled(&capture.counts, area.x, y, &mut light);
+                counted.count(&light, &channels(layout, area.x, y, NO_CHANNEL));
+            }
+            counted
+        })
+        .collect();
+    parts.iter().fold(BrightSamples::none(), BrightSamples::and).saturation()
 }
 
 /// Keeps the heaps that lie at the converter's limit, which is one for all channels: a heap below which another
 /// channel goes on is only an even surface.
-fn common(levels: [f32; 3], histogram: &Histogram) -> [f32; 3] {
+fn common(levels: [f32; 3], histogram: &[[u64; BINS]; 3]) -> [f32; 3] {
     const TOLERANCE: f32 = 0.015;
     let brightest = |channel: &[u64; BINS]| {
         let mut above = 0;

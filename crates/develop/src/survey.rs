@@ -1,15 +1,11 @@
-//! One look at the whole frame: mean light of small blocks, what is clipped, how the light is spread.
+//! One look at the whole frame: mean light of small blocks, where channels clip, and which blocks are clipped.
 
-use darkroot_photo::{Capture, Counts, Layout, Mosaic, Rect};
+use darkroot_photo::{Capture, Rect};
 use rayon::prelude::*;
 
-use crate::corrections::{self, Run, is_supported};
 use crate::highlights::CLIPPED;
-use crate::level::Levels;
-use crate::saturation::saturation;
-
-/// Bins of a histogram; bin i holds light from (i / BINS)^2 to ((i + 1) / BINS)^2 of saturation.
-pub const BINS: usize = 64;
+use crate::light::{LinearLight, channels, period};
+use crate::saturation::{BrightSamples, NO_CHANNEL};
 
 /// Smallest side of a block, in pixels; rounded up to whole periods of the filter array.
 const BLOCK: usize = 8;
@@ -32,137 +28,137 @@ pub struct Survey {
     pub blocks: Vec<Block>,
     /// Share of the white level at which each channel clips.
     pub saturation: [f32; 3],
-    /// Share of clipped samples of each channel, 0..=1.
-    pub clipped: [f64; 3],
-    /// Number of samples by square root of light, for each channel.
-    pub histogram: [[u64; BINS]; 3],
+    /// Light beside clipped places.
+    pub edges: ClippedEdges,
+}
+
+/// Sums over the blocks that are whole, next to blocks in which a channel is clipped.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ClippedEdges {
+    /// For each channel: mean light of red, green and blue, summed over the blocks beside those where it is clipped.
+    pub sums: [[f64; 3]; 3],
+    /// For each channel: how many such blocks there are.
+    pub counts: [f64; 3],
 }
 
 /// Looks at the active area of a capture.
-pub fn survey(capture: &Capture) -> Survey {
-    whole(capture, &Levels::new(capture))
-}
-
-pub(crate) fn whole(capture: &Capture, levels: &Levels) -> Survey {
-    look(capture, levels, saturation(capture, levels), capture.active_area)
+pub fn survey(capture: &Capture, linear: &LinearLight) -> Survey {
+    let area = capture.active_area;
+    let side = block_side(capture, area);
+    let (columns, rows) = (area.width / side, area.height / side);
+    // What is left over below the last row of blocks has a say in where channels clip, too.
+    let strips: Vec<Strip> = (0..area.height.div_ceil(side))
+        .into_par_iter()
+        .map(|row| {
+            let y = area.y + row * side;
+            let height = side.min(area.bottom() - y);
+            let columns = if row < rows { columns } else { 0 };
+            strip(capture, linear, Rect { x: area.x, y, width: area.width, height }, side, columns)
+        })
+        .collect();
+    let bright = strips.iter().map(|s| &s.bright).fold(BrightSamples::none(), BrightSamples::and);
+    let saturation = bright.saturation();
+    let limits = saturation.map(|s| CLIPPED * s);
+    let block =
+        |seen: &Seen| Block { mean: seen.mean, clipped: [0, 1, 2].map(|c| seen.most[c] >= limits[c]) };
+    let blocks: Vec<Block> = strips.iter().flat_map(|s| s.blocks.iter().map(block)).collect();
+    let edges = clipped_edges(&blocks, columns);
+    Survey { columns, blocks, saturation, edges }
 }
 
 /// Mean linear light of each channel in a rectangle of the frame (inside the active area).
-pub(crate) fn mean(capture: &Capture, levels: &Levels, rect: Rect) -> [f64; 3] {
-    let seen = look(capture, levels, [1.0; 3], rect);
-    let count = seen.blocks.len().max(1) as f64;
-    [0, 1, 2].map(|c| seen.blocks.iter().map(|b| f64::from(b.mean[c])).sum::<f64>() / count)
+pub fn mean(capture: &Capture, linear: &LinearLight, rect: Rect) -> [f64; 3] {
+    let side = block_side(capture, rect);
+    let (columns, rows) = (rect.width / side, rect.height / side);
+    let mut sums = [0f64; 3];
+    for row in 0..rows {
+        let place = Rect { y: rect.y + row * side, height: side, ..rect };
+        for seen in strip(capture, linear, place, side, columns).blocks {
+            sums = [0, 1, 2].map(|c| sums[c] + f64::from(seen.mean[c]));
+        }
+    }
+    sums.map(|sum| sum / (columns * rows).max(1) as f64)
+}
+
+/// A block is a whole number of periods of the filter array, and no larger than the area.
+fn block_side(capture: &Capture, area: Rect) -> usize {
+    let (x, y) = period(capture.counts.layout());
+    let period = x.max(y);
+    (BLOCK.div_ceil(period) * period).min(area.width.min(area.height)).max(1)
+}
+
+/// One block before it is known where channels clip.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    mean: [f32; 3],
+    /// Brightest sample.
+    most: [f32; 3],
 }
 
 /// What one row of blocks holds.
 struct Strip {
-    blocks: Vec<Block>,
-    clipped: [u64; 3],
-    histogram: [[u64; BINS]; 3],
+    blocks: Vec<Seen>,
+    bright: BrightSamples,
 }
 
-fn look(capture: &Capture, levels: &Levels, saturation: [f32; 3], area: Rect) -> Survey {
-    match &capture.counts {
-        Counts::U16(counts) => look_at(capture, counts, levels, saturation, area),
-        Counts::F32(counts) => look_at(capture, counts, levels, saturation, area),
-    }
-}
-
-fn look_at<T: Copy + Into<f32> + Sync>(
-    capture: &Capture,
-    counts: &Mosaic<T>,
-    levels: &Levels,
-    saturation: [f32; 3],
-    area: Rect,
-) -> Survey {
-    let period = match &counts.layout {
-        Layout::Cfa(cfa) => cfa.width().max(cfa.height()),
-        Layout::Monochrome | Layout::Rgb => 1,
-    };
-    // A block is a whole number of periods, and no larger than the area.
-    let side = BLOCK.div_ceil(period) * period;
-    let side = side.min(area.width.min(area.height)).max(1);
-    let (columns, rows) = (area.width / side, area.height / side);
-    let supported: Vec<_> = capture.mosaic_corrections.iter().filter(|c| is_supported(c)).cloned().collect();
-    let strips: Vec<Strip> = (0..rows)
-        .into_par_iter()
-        .map(|row| {
-            let place = Rect { x: area.x, y: area.y + row * side, width: columns * side, height: side };
-            strip(capture, counts, levels, &supported, saturation, place)
-        })
-        .collect();
-
-    let mut survey = Survey {
-        columns,
-        blocks: Vec::with_capacity(columns * rows),
-        saturation,
-        clipped: [0.0; 3],
-        histogram: [[0; BINS]; 3],
-    };
-    let mut clipped = [0u64; 3];
-    for strip in strips {
-        survey.blocks.extend(strip.blocks);
-        for (sum, n) in clipped.iter_mut().zip(strip.clipped) {
-            *sum += n;
-        }
-        for (sum, n) in survey.histogram.iter_mut().flatten().zip(strip.histogram.iter().flatten()) {
-            *sum += n;
-        }
-    }
-    let total = |c: usize| survey.histogram[c].iter().sum::<u64>().max(1) as f64;
-    survey.clipped = [0, 1, 2].map(|c| clipped[c] as f64 / total(c));
-    survey
-}
-
-fn strip<T: Copy + Into<f32>>(
-    capture: &Capture,
-    counts: &Mosaic<T>,
-    levels: &Levels,
-    supported: &[darkroot_photo::Correction],
-    saturation: [f32; 3],
-    place: Rect,
-) -> Strip {
-    let (planes, side, area) = (counts.layout.planes(), place.height, capture.active_area);
-    let columns = place.width / side;
-    let mut strip =
-        Strip { blocks: vec![Block::default(); columns], clipped: [0; 3], histogram: [[0; BINS]; 3] };
-    let mut numbers = vec![[0f32; 3]; columns];
+fn strip(capture: &Capture, linear: &LinearLight, place: Rect, side: usize, columns: usize) -> Strip {
+    let layout = capture.counts.layout();
+    let planes = layout.planes();
+    let mut bright = BrightSamples::none();
+    // A fourth channel takes the samples under filters of other colours.
+    let mut sums = vec![[0f32; 4]; columns];
+    let mut most = vec![[f32::MIN; 4]; columns];
+    let mut numbers = [0f32; 4];
     let mut light = vec![0f32; place.width * planes];
     for y in place.y..place.bottom() {
-        let start = (y * counts.size.width + place.x) * planes;
-        levels.row(&counts.samples[start..start + light.len()], place.x * planes, y, &mut light);
-        if !supported.is_empty() {
-            let run = Run { x: place.x - area.x, y: y - area.y, planes, active: area.size() };
-            corrections::row(&mut light, supported, run);
+        linear.levelled(&capture.counts, place.x, y, &mut light);
+        let of_row = channels(layout, place.x, y, NO_CHANNEL);
+        bright.count(&light, &of_row);
+        linear.correct(place.x, y, &mut light);
+        let of_block: Vec<usize> = of_row.iter().copied().cycle().take(side * planes).collect();
+        for &c in &of_block {
+            numbers[c] += 1.0;
         }
-        for (i, &v) in light.iter().enumerate() {
-            let x = i / planes;
-            let block = x / side;
-            let mut count = |c: usize| {
-                strip.blocks[block].mean[c] += v;
-                numbers[block][c] += 1.0;
-                let bin = (v.clamp(0.0, 1.0).sqrt() * BINS as f32) as usize;
-                strip.histogram[c][bin.min(BINS - 1)] += 1;
-                if v >= CLIPPED * saturation[c] {
-                    strip.blocks[block].clipped[c] = true;
-                    strip.clipped[c] += 1;
-                }
-            };
-            match &counts.layout {
-                Layout::Cfa(cfa) => {
-                    if let Some(c) = cfa.at(place.x + x, y).plane() {
-                        count(c);
-                    }
-                }
-                Layout::Rgb => count(i % 3),
-                Layout::Monochrome => (0..3).for_each(count),
+        let blocks = light.chunks_exact(side * planes).zip(sums.iter_mut().zip(&mut most));
+        for (samples, (sums, most)) in blocks {
+            for (&v, &c) in samples.iter().zip(&of_block) {
+                sums[c] += v;
+                most[c] = most[c].max(v);
             }
         }
     }
-    for (block, numbers) in strip.blocks.iter_mut().zip(numbers) {
-        for (mean, n) in block.mean.iter_mut().zip(numbers) {
-            *mean /= n.max(1.0);
+    // The one sample of a monochrome pixel stands for all three channels.
+    let source = if planes == 1 && numbers[1] + numbers[2] + numbers[3] < 0.5 { [0; 3] } else { [0, 1, 2] };
+    let blocks = sums.iter().zip(&most).map(|(sums, most)| Seen {
+        mean: source.map(|c| sums[c] / numbers[c].max(1.0)),
+        most: source.map(|c| most[c]),
+    });
+    Strip { blocks: blocks.collect(), bright }
+}
+
+fn clipped_edges(blocks: &[Block], columns: usize) -> ClippedEdges {
+    let mut edges = ClippedEdges::default();
+    if !blocks.iter().any(|b| b.clipped.contains(&true)) {
+        return edges;
+    }
+    let columns = columns.max(1);
+    let rows = blocks.len() / columns;
+    for (i, block) in blocks.iter().enumerate() {
+        if block.clipped.contains(&true) {
+            continue;
+        }
+        let (x, y) = (i % columns, i / columns);
+        let mut beside = [false; 3];
+        for v in y.saturating_sub(1)..(y + 2).min(rows) {
+            for u in x.saturating_sub(1)..(x + 2).min(columns) {
+                let clipped = blocks[v * columns + u].clipped;
+                beside = [0, 1, 2].map(|c| beside[c] || clipped[c]);
+            }
+        }
+        for c in (0..3).filter(|&c| beside[c]) {
+            edges.sums[c] = [0, 1, 2].map(|k| edges.sums[c][k] + f64::from(block.mean[k]));
+            edges.counts[c] += 1.0;
         }
     }
-    strip
+    edges
 }

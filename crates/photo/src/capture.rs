@@ -105,3 +105,33 @@ pub struct Capture {
     /// What had to be assumed or left out, in words. Nothing is guessed in silence.
     pub notes: Vec<String>,
 }
+
+impl Capture {
+    /// A capture of which nothing is known but its samples: all of the frame is shown as it stands, black is 0 and white
+    /// 1, and no matrix, light or metadata is there.
+    pub fn bare(counts: Counts) -> Self {
+        let frame = Rect::full(counts.size());
+        let bits = if matches!(counts, Counts::U16(_)) { 16 } else { 32 };
+        let nothing = String::new;
+        Self {
+            camera: Camera::default(),
+            counts,
+            active_area: frame,
+            default_crop: frame,
+            orientation: Orientation::Upright,
+            pixel_aspect: 1.0,
+            black: BlackLevel::uniform(0.0),
+            white: WhiteLevel([1.0; 3]),
+            as_shot: None,
+            balance_applied: false,
+            calibrations: Vec::new(),
+            analog_balance: [1.0; 3],
+            baseline_exposure: 0.0,
+            mosaic_corrections: Vec::new(),
+            picture_corrections: Vec::new(),
+            metadata: Metadata::default(),
+            source: Source { format: nothing(), compression: nothing(), bits, decoder: nothing() },
+            notes: Vec::new(),
+        }
+    }
+}

@@ -25,10 +25,13 @@ fn with(mosaic: Vec<Correction>, picture: Vec<Correction>, layout: Layout) -> Ca
 
 /// Fails unless the developed grey has the expected share of the light at each pixel, however it is cut.
 fn check(capture: &Capture, expected: impl Fn(usize, usize) -> f64, tolerance: f64, what: &str) {
-    let plan = darkroot_develop::plan(capture, None, &sensor()).unwrap();
-    let whole = plan.render(capture);
+    let plan = darkroot_tests::plan(capture, None, &sensor()).unwrap();
+    let whole = darkroot_tests::rendered(&plan);
     for (columns, rows) in [(1, 46), (7, 5), (33, 17)] {
-        assert!(plan.render_in_tiles(capture, columns, rows) == whole, "{what}: tiles of {columns} x {rows}");
+        assert!(
+            darkroot_tests::rendered_in_tiles(&plan, columns, rows) == whole,
+            "{what}: tiles of {columns} x {rows}"
+        );
     }
     for (i, p) in pixels(&whole).iter().enumerate() {
         let (x, y) = (i % SIZE.width, i / SIZE.width);
@@ -163,7 +166,8 @@ fn a_correction_touches_only_its_rectangle_its_plane_and_its_pitch() {
 
     let area = Area { rect: inner, plane: 1, planes: 1, row_pitch: 2, column_pitch: 3 };
     let capture = with(vec![], vec![half(area)], Layout::Rgb);
-    let picture = pixels(&darkroot_develop::plan(&capture, None, &sensor()).unwrap().render(&capture));
+    let picture =
+        pixels(&darkroot_tests::rendered(&darkroot_tests::plan(&capture, None, &sensor()).unwrap()));
     for (i, p) in picture.iter().enumerate() {
         let (x, y) = (i % SIZE.width, i / SIZE.width);
         let hit = inside(x, y) && (x - 11).is_multiple_of(3) && (y - 9).is_multiple_of(2);
@@ -193,7 +197,8 @@ fn places_count_from_the_active_area() {
         let rect = Rect { x: 0, y: 0, width: 30, height: 30 };
         capture.picture_corrections =
             vec![Correction::Polynomial(Area { rect, ..everywhere(3) }, vec![0.0, 0.5])];
-        let picture = pixels(&darkroot_develop::plan(&capture, None, &sensor()).unwrap().render(&capture));
+        let picture =
+            pixels(&darkroot_tests::rendered(&darkroot_tests::plan(&capture, None, &sensor()).unwrap()));
         for (i, p) in picture.iter().enumerate() {
             let right = f64::from(LEVEL) * if i % 60 < 30 { 0.5 } else { 1.0 };
             assert!(p.iter().all(|v| (v - right).abs() < 1e-4), "{name} at {}: {p:?}", i % 60);
@@ -206,10 +211,10 @@ fn what_is_not_applied_is_said() {
     let warp = Correction::Warp(Warp { planes: vec![[1.0, 0.1, 0.0, 0.0, 0.0, 0.0]], centre: (0.5, 0.5) });
     let warped = with(vec![], vec![warp], filters("RGGB"));
     let recipe = Recipe { output: output(RgbSpace::SRGB, Bits::Eight), ..Recipe::default() };
-    let plan = darkroot_develop::plan(&warped, None, &recipe).unwrap();
+    let plan = darkroot_tests::plan(&warped, None, &recipe).unwrap();
     assert!(plan.notes.iter().any(|note| note.contains("WarpRectilinear")), "{:?}", plan.notes);
     let plain = flat_grey(filters("RGGB"), SIZE, LEVEL);
-    let expected = darkroot_develop::plan(&plain, None, &recipe).unwrap();
+    let expected = darkroot_tests::plan(&plain, None, &recipe).unwrap();
     assert!(expected.notes.is_empty());
-    assert!(plan.render(&warped) == expected.render(&plain));
+    assert!(darkroot_tests::rendered(&plan) == darkroot_tests::rendered(&expected));
 }

@@ -53,8 +53,8 @@ fn survive(bytes: &[u8]) -> bool {
             Ok(capture) => {
                 decoded |= decoder == Decoder::Flashraw;
                 for recipe in recipes() {
-                    if let Ok(plan) = darkroot_develop::plan(&capture, None, &recipe) {
-                        assert_eq!(plan.render(&capture).size, plan.size());
+                    if let Ok(plan) = darkroot_tests::plan(&capture, None, &recipe) {
+                        assert_eq!(darkroot_tests::rendered(&plan).size, plan.size());
                     }
                 }
             }

@@ -117,9 +117,9 @@ fn camera_rgb_is_the_balanced_samples_themselves() {
     let Counts::F32(mosaic) = &capture.counts else { panic!("exact captures are floating-point") };
     let output = Output { space: OutputSpace::Camera, bits: Bits::Float };
     let plan =
-        darkroot_develop::plan(&capture, None, &Recipe { look: Look::Linear, output, ..Recipe::default() })
+        darkroot_tests::plan(&capture, None, &Recipe { look: Look::Linear, output, ..Recipe::default() })
             .unwrap();
-    let picture = pixels(&plan.render(&capture));
+    let picture = pixels(&darkroot_tests::rendered(&plan));
     for (pixel, seen) in picture.iter().zip(mosaic.samples.chunks_exact(3)) {
         for c in 0..3 {
             let balanced = f64::from(seen[c] * plan.multipliers[c]);

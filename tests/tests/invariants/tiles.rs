@@ -32,7 +32,11 @@ fn check(
     let in_pool = |threads: usize, columns: usize, rows: usize| -> Picture {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            darkroot_develop::plan(capture, profile, recipe).unwrap().render_in_tiles(capture, columns, rows)
+            darkroot_tests::rendered_in_tiles(
+                &darkroot_tests::plan(capture, profile, recipe).unwrap(),
+                columns,
+                rows,
+            )
         })
     };
     let whole = in_pool(1, SIZE.width, SIZE.width);
@@ -41,7 +45,7 @@ fn check(
         let cut = in_pool(threads, columns, rows);
         assert!(cut == whole, "{what}: {columns} x {rows} with {threads} threads");
     }
-    let usual = darkroot_develop::plan(capture, profile, recipe).unwrap().render(capture);
+    let usual = darkroot_tests::rendered(&darkroot_tests::plan(capture, profile, recipe).unwrap());
     assert!(usual == whole, "{what}: rendered as always");
 }
 
@@ -114,6 +118,8 @@ fn what_is_chosen_from_the_whole_picture_does_not_depend_on_threads_or_tiles() {
 #[test]
 fn tiles_larger_than_any_picture_are_the_whole_picture() {
     let capture = capture(layouts().remove(0).1, Orientation::Upright);
-    let plan = darkroot_develop::plan(&capture, None, &Recipe::default()).unwrap();
-    assert!(plan.render_in_tiles(&capture, usize::MAX, usize::MAX) == plan.render(&capture));
+    let plan = darkroot_tests::plan(&capture, None, &Recipe::default()).unwrap();
+    assert!(
+        darkroot_tests::rendered_in_tiles(&plan, usize::MAX, usize::MAX) == darkroot_tests::rendered(&plan)
+    );
 }

@@ -3,7 +3,7 @@
 use darkroot_colour::difference::de2000;
 use darkroot_colour::temperature::{Temperature, daylight_xy};
 use darkroot_colour::{RgbSpace, Spectrum, Xy, white};
-use darkroot_develop::{Balance, Bits, Crop, Error, Recipe};
+use darkroot_develop::{Balance, Bits, Crop, Error, Recipe, SpotFault};
 use darkroot_photo::{AsShot, Capture, Layout, Orientation, Rect, Size};
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::expose::expose;
@@ -38,7 +38,7 @@ fn spot() -> Balance {
 
 /// Red over green and blue over green of the multipliers, as shares of the right ones.
 fn off(capture: &Capture, balance: Balance, right: [f64; 3]) -> (f64, f64) {
-    let plan = darkroot_develop::plan(capture, None, &Recipe { balance, ..Recipe::default() }).unwrap();
+    let plan = darkroot_tests::plan(capture, None, &Recipe { balance, ..Recipe::default() }).unwrap();
     let m = plan.multipliers.map(f64::from);
     (m[0] / m[1] * right[0] / right[1] - 1.0, m[2] / m[1] * right[2] / right[1] - 1.0)
 }
@@ -49,7 +49,7 @@ fn as_shot_is_the_neutral_of_the_file() {
     let neutral = camera(filters("RGGB")).neutral(&day());
     let (red, blue) = off(&capture, Balance::AsShot, neutral);
     assert!(red.abs() < 1e-6 && blue.abs() < 1e-6, "{red} {blue}");
-    let plan = darkroot_develop::plan(&capture, None, &Recipe::default()).unwrap();
+    let plan = darkroot_tests::plan(&capture, None, &Recipe::default()).unwrap();
     assert!(plan.multipliers.iter().all(|&m| m >= 1.0) && plan.multipliers.contains(&1.0));
 }
 
@@ -79,7 +79,7 @@ fn a_temperature_asked_for_is_the_temperature_reported() {
     let capture = still_life(day(), Orientation::Upright);
     for (kelvin, tint) in [(2500.0, 0.0), (3200.0, 12.0), (5200.0, -8.0), (7500.0, 30.0), (12000.0, 0.0)] {
         let balance = Balance::Kelvin { kelvin, tint };
-        let plan = darkroot_develop::plan(&capture, None, &Recipe { balance, ..Recipe::default() }).unwrap();
+        let plan = darkroot_tests::plan(&capture, None, &Recipe { balance, ..Recipe::default() }).unwrap();
         let white = plan.white.unwrap();
         assert!((white.kelvin / kelvin - 1.0).abs() < 2e-3, "{kelvin}, {tint}: {white:?}");
         assert!((white.tint() - tint).abs() < 0.5, "{kelvin}, {tint}: {}", white.tint());
@@ -138,16 +138,16 @@ fn a_spot_on_the_grey_card_is_the_neutral_in_every_orientation() {
 fn a_spot_counts_from_the_corner_of_what_is_shown() {
     let mut capture = still_life(day(), Orientation::Upright);
     let whole =
-        darkroot_develop::plan(&capture, None, &Recipe { balance: spot(), ..Recipe::default() }).unwrap();
+        darkroot_tests::plan(&capture, None, &Recipe { balance: spot(), ..Recipe::default() }).unwrap();
     let (dx, dy) = (10, 6);
     capture.default_crop = Rect { x: dx, y: dy, width: SIZE.width - 2 * dx, height: SIZE.height - 2 * dy };
     let Balance::Spot { x, y, side } = spot() else { panic!("a spot") };
     let moved = Balance::Spot { x: x - dx, y: y - dy, side };
     let cropped =
-        darkroot_develop::plan(&capture, None, &Recipe { balance: moved, ..Recipe::default() }).unwrap();
+        darkroot_tests::plan(&capture, None, &Recipe { balance: moved, ..Recipe::default() }).unwrap();
     assert_eq!(whole.multipliers, cropped.multipliers);
     let recipe = Recipe { balance: spot(), crop: Crop::Active, ..Recipe::default() };
-    assert_eq!(darkroot_develop::plan(&capture, None, &recipe).unwrap().multipliers, whole.multipliers);
+    assert_eq!(darkroot_tests::plan(&capture, None, &recipe).unwrap().multipliers, whole.multipliers);
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn the_multipliers_of_the_neutral_are_the_balance_as_shot() {
 }
 
 fn error(capture: &Capture, balance: Balance) -> Error {
-    darkroot_develop::plan(capture, None, &Recipe { balance, ..Recipe::default() }).unwrap_err()
+    darkroot_tests::plan(capture, None, &Recipe { balance, ..Recipe::default() }).unwrap_err()
 }
 
 #[test]
@@ -238,14 +238,15 @@ fn a_balance_that_is_impossible_is_an_error() {
 #[test]
 fn a_spot_that_is_too_dark_clipped_or_too_small_is_an_error() {
     let why = |capture: &Capture| match error(capture, Balance::Spot { x: 2, y: 2, side: 16 }) {
-        Error::Spot { why, .. } => why,
+        Error::Spot { fault, .. } => fault,
         other => panic!("{other}"),
     };
     let size = Size { width: 32, height: 32 };
     let flat = |level| flat_grey(filters("RGGB"), size, level);
-    assert!(why(&flat(1e-4)).contains("dark"));
-    assert!(why(&flat(1.0)).contains("clipped"));
-    assert!(why(&flat_grey(filters("RGGB"), Size { width: 5, height: 5 }, 0.5)).contains("small"));
+    assert_eq!(why(&flat(1e-4)), SpotFault::TooDark);
+    assert_eq!(why(&flat(1.0)), SpotFault::Clipped);
+    let tiny = flat_grey(filters("RGGB"), Size { width: 5, height: 5 }, 0.5);
+    assert_eq!(why(&tiny), SpotFault::TooSmall);
 }
 
 #[test]
@@ -255,7 +256,7 @@ fn a_temperature_means_nothing_without_matrices_but_everything_else_still_works(
     assert_eq!(error(&blind, kelvin), Error::NoMatrix);
     assert_eq!(error(&blind, Balance::Daylight), Error::NoMatrix);
     for balance in [Balance::AsShot, Balance::Auto, spot(), Balance::Multipliers([2.0, 1.0, 1.5])] {
-        let plan = darkroot_develop::plan(&blind, None, &Recipe { balance, ..Recipe::default() }).unwrap();
+        let plan = darkroot_tests::plan(&blind, None, &Recipe { balance, ..Recipe::default() }).unwrap();
         assert!(plan.notes.iter().any(|n| n.contains("no colour matrix")), "{:?}", plan.notes);
     }
 }
@@ -263,11 +264,10 @@ fn a_temperature_means_nothing_without_matrices_but_everything_else_still_works(
 #[test]
 fn a_file_without_a_white_balance_gets_one_from_the_picture_and_says_so() {
     let capture = Capture { as_shot: None, ..still_life(day(), Orientation::Upright) };
-    let plan = darkroot_develop::plan(&capture, None, &Recipe::default()).unwrap();
+    let plan = darkroot_tests::plan(&capture, None, &Recipe::default()).unwrap();
     assert!(plan.notes.iter().any(|n| n.contains("estimated")), "{:?}", plan.notes);
-    let auto =
-        darkroot_develop::plan(&capture, None, &Recipe { balance: Balance::Auto, ..Recipe::default() })
-            .unwrap();
+    let auto = darkroot_tests::plan(&capture, None, &Recipe { balance: Balance::Auto, ..Recipe::default() })
+        .unwrap();
     assert_eq!(plan.multipliers, auto.multipliers);
 }
 
@@ -294,7 +294,7 @@ fn samples_that_are_balanced_already_are_not_balanced_again() {
 fn a_sensor_with_other_filters_says_which() {
     let camera = Camera { layout: filters("RGEB"), ..camera(filters("RGGB")) };
     let capture = expose(&Scene::gradient(Size { width: 16, height: 16 }), &camera, &Exposure::default());
-    let message = darkroot_develop::plan(&capture, None, &Recipe::default()).unwrap_err().to_string();
+    let message = darkroot_tests::plan(&capture, None, &Recipe::default()).unwrap_err().to_string();
     assert!(message.contains("RGEB"), "{message}");
 }
 

@@ -8,9 +8,13 @@
 use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb};
 
 use crate::noise::Noise;
+use crate::stage::{Stage, WhenSmaller};
 
 /// Pixels around the result that the correction looks at.
 pub const BORDER: usize = 2;
+
+/// What it asks of a tile.
+pub const STAGE: Stage = Stage { name: "noise bias", border: BORDER, when_smaller: WhenSmaller::Skipped };
 
 /// Corrects a picture that [`super::Method::Lmmse`] made of this mosaic, which has `border` more pixels on each
 /// side.
@@ -49,9 +53,8 @@ pub fn debias(mosaic: &Mosaic<f32>, border: usize, noise: &Noise, picture: &mut 
 mod tests {
     use super::*;
     use crate::demosaic::{Method, demosaic};
-    use darkroot_photo::{
-        BlackLevel, Camera, Capture, Cfa, Counts, Metadata, Orientation, Rect, Size, Source, WhiteLevel,
-    };
+    use crate::light::LinearLight;
+    use darkroot_photo::{Capture, Cfa, Counts, Size};
 
     /// A dark grey whose noise is stronger in red and blue, as balancing makes it.
     fn shadows(size: Size) -> Mosaic<f32> {
@@ -71,34 +74,6 @@ mod tests {
         Mosaic { size, layout: Layout::Cfa(cfa), samples }
     }
 
-    fn capture(mosaic: &Mosaic<f32>) -> Capture {
-        Capture {
-            camera: Camera::default(),
-            counts: Counts::F32(mosaic.clone()),
-            active_area: Rect::full(mosaic.size),
-            default_crop: Rect::full(mosaic.size),
-            orientation: Orientation::Upright,
-            pixel_aspect: 1.0,
-            black: BlackLevel::uniform(0.0),
-            white: WhiteLevel([1.0; 3]),
-            as_shot: None,
-            balance_applied: false,
-            calibrations: Vec::new(),
-            analog_balance: [1.0; 3],
-            baseline_exposure: 0.0,
-            mosaic_corrections: Vec::new(),
-            picture_corrections: Vec::new(),
-            metadata: Metadata::default(),
-            source: Source {
-                format: String::new(),
-                compression: String::new(),
-                bits: 32,
-                decoder: String::new(),
-            },
-            notes: Vec::new(),
-        }
-    }
-
     fn worst_error(picture: &Rgb<CameraSpace>) -> f32 {
         let mean = |plane: &[f32]| plane.iter().sum::<f32>() / plane.len() as f32;
         picture.planes().iter().map(|p| (mean(p) / 0.004 - 1.0).abs()).fold(0.0, f32::max)
@@ -107,8 +82,9 @@ mod tests {
     #[test]
     fn noise_in_deep_shadows_does_not_tint_the_picture() {
         let mosaic = shadows(Size { width: 512, height: 512 });
-        let capture = capture(&mosaic);
-        let noise = Noise::measure(&capture, &crate::level::Levels::new(&capture), &[], [1.0; 3]);
+        let capture = Capture::bare(Counts::F32(mosaic.clone()));
+        let windows = crate::noise::windows(&capture, &LinearLight::of(&capture));
+        let noise = Noise::of(&windows, [1.0; 3]);
         let mut picture = demosaic(&mosaic, Method::Lmmse, 16);
         let plain = worst_error(&picture);
         debias(&mosaic, 16, &noise, &mut picture);

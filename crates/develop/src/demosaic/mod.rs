@@ -7,11 +7,15 @@
 use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb, Size};
 
 use crate::Demosaic;
+use crate::stage::{Stage, WhenSmaller};
 
 pub mod bilinear;
 pub mod debias;
+mod kriging;
 pub mod lmmse;
+pub mod reduce;
 pub mod xtrans;
+mod xtrans_sites;
 
 /// A demosaicing method for one sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,25 +37,26 @@ impl Method {
             Layout::Rgb | Layout::Monochrome => Some(Self::None),
             Layout::Cfa(cfa) if !cfa.is_rgb() => None,
             Layout::Cfa(cfa) if cfa.is_bayer() && wanted == Demosaic::Best => Some(Self::Lmmse),
-            Layout::Cfa(cfa) if xtrans::phase(cfa).is_some() && wanted == Demosaic::Best => {
+            Layout::Cfa(cfa) if xtrans_sites::phase(cfa).is_some() && wanted == Demosaic::Best => {
                 Some(Self::XTrans)
             }
             Layout::Cfa(_) => Some(Self::Bilinear),
         }
     }
 
-    /// Pixels around the result that the method looks at.
-    pub fn border(self) -> usize {
-        match self {
+    /// What it asks of a tile.
+    pub const fn stage(self) -> Stage {
+        let border = match self {
             Self::Lmmse => lmmse::BORDER,
             Self::XTrans => xtrans::BORDER,
             Self::Bilinear => bilinear::BORDER,
             Self::None => 0,
-        }
+        };
+        Stage { name: self.name(), border, when_smaller: WhenSmaller::Skipped }
     }
 
     /// Name and source, for people.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Lmmse => "directional LMMSE (Zhang and Wu 2005)",
             Self::XTrans => "kriging under eight models (after Matheron 1963, Dubrule 1983)",
@@ -61,14 +66,14 @@ impl Method {
     }
 }
 
-/// Interpolates the inner part of a balanced mosaic: `border` pixels, at least [`Method::border`], are cut off
+/// Interpolates the inner part of a balanced mosaic: `border` pixels, at least those of [`Method::stage`], are cut off
 /// on each side.
 pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize) -> Rgb<CameraSpace> {
     let inner = Size { width: mosaic.size.width - 2 * border, height: mosaic.size.height - 2 * border };
     let mut picture = Rgb::black(inner);
     match (method, &mosaic.layout) {
         (Method::Lmmse, Layout::Cfa(cfa)) => lmmse::demosaic(mosaic, cfa, border, &mut picture),
-        (Method::XTrans, Layout::Cfa(cfa)) => match xtrans::phase(cfa) {
+        (Method::XTrans, Layout::Cfa(cfa)) => match xtrans_sites::phase(cfa) {
             Some(phase) => xtrans::demosaic(mosaic, phase, border, &mut picture),
             None => bilinear::demosaic(mosaic, cfa, border, &mut picture),
         },

@@ -74,7 +74,7 @@ fn twice_the_light_is_twice_the_picture() {
 fn a_pixel_does_not_depend_on_where_its_tile_begins() {
     for (cfa, method) in methods() {
         let light = |x: usize, y: usize, c: usize| ((x * 7919 + y * 104_729 + c * 31) % 1000) as f32 / 1000.0;
-        let border = method.border();
+        let border = method.stage().border;
         let whole = demosaic(&mosaic(&cfa, SIZE, light), method, border);
         for (x0, y0) in [(1, 0), (0, 1), (5, 3), (8, 4)] {
             let size = Size { width: 37, height: 33 };

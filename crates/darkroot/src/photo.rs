@@ -1,0 +1,113 @@
+//! A photograph in memory: what other programs stand on.
+//!
+//! ```no_run
+//! use darkroot::{Cancel, Limits, Photo, ProfileStore, Scale, Settings};
+//!
+//! let bytes = std::fs::read("DSC_0001.NEF")?;
+//! let photo = Photo::open(&bytes, &Limits::default())?;
+//! let analysis = photo.analyse();
+//! let plan = photo.plan(&analysis, &ProfileStore::builtin(), &Settings::default())?;
+//! let scale = Scale::to_show(plan.size(), 1400);
+//! let preview = plan.render(plan.whole(scale), &Cancel::default())?;
+//! println!("{} x {}", preview.size.width, preview.size.height);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::sync::Arc;
+
+use darkroot_develop::{Analysis, Plan};
+use darkroot_photo::Capture;
+use darkroot_raw::{Decoder, Limits};
+
+use crate::settings::{Settings, SettingsError};
+use crate::store::{ChosenProfile, ProfileStore};
+
+/// A decoded raw file.
+#[derive(Debug, Clone)]
+pub struct Photo {
+    capture: Arc<Capture>,
+}
+
+/// Why there is no plan for a photograph.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// Settings that contradict each other.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The profile that was asked for cannot be used.
+    #[error(transparent)]
+    Profile(#[from] Box<crate::Error>),
+    /// The capture cannot be developed like that.
+    #[error(transparent)]
+    Develop(#[from] darkroot_develop::Error),
+}
+
+impl Photo {
+    /// Decodes the bytes of a raw file.
+    ///
+    /// # Errors
+    /// Anything wrong with the file, in one sentence.
+    pub fn open(bytes: &[u8], limits: &Limits) -> Result<Self, darkroot_raw::Error> {
+        Self::open_with(bytes, Decoder::default(), limits)
+    }
+
+    /// As [`Photo::open`], by a decoder of one's choice.
+    ///
+    /// # Errors
+    /// As [`Photo::open`].
+    pub fn open_with(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Self, darkroot_raw::Error> {
+        darkroot_raw::decode(bytes, decoder, limits).map(Self::from)
+    }
+
+    /// What the file says, and its samples.
+    pub fn capture(&self) -> &Capture {
+        &self.capture
+    }
+
+    /// Looks at the samples once, for every plan to come: noise, clipping, light. No setting has a say in it.
+    pub fn analyse(&self) -> Analysis {
+        Analysis::of(Arc::clone(&self.capture))
+    }
+
+    /// An analysis that looks at the samples as far as one plan asks, and when it asks: for a program that makes one
+    /// picture and no more.
+    pub fn analyse_as_asked(&self) -> Analysis {
+        Analysis::deferred(Arc::clone(&self.capture))
+    }
+
+    /// Prepares development: all that depends on settings and not on the part of the picture. Cheap, so that it can be
+    /// done again for each move of a slider. The format says which space and sample type the picture has by default.
+    ///
+    /// # Errors
+    /// Settings that contradict each other, a profile that cannot be used, a photograph that cannot be developed like
+    /// that.
+    pub fn plan(
+        &self,
+        analysis: &Analysis,
+        store: &ProfileStore,
+        settings: &Settings,
+    ) -> Result<Plan, PlanError> {
+        let chosen = self.profile(store, settings)?;
+        let recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
+        Ok(darkroot_develop::plan(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), &recipe)?)
+    }
+
+    /// The profile that gives the colours, with the place it is from; `None` where the file's own matrices do.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no profile, or is for another camera.
+    pub fn profile<'a>(
+        &self,
+        store: &'a ProfileStore,
+        settings: &Settings,
+    ) -> Result<Option<ChosenProfile<'a>>, Box<crate::Error>> {
+        store.for_camera(&self.capture.camera, &settings.profile).map_err(Box::new)
+    }
+}
+
+impl From<Capture> for Photo {
+    fn from(capture: Capture) -> Self {
+        Self { capture: Arc::new(capture) }
+    }
+}
