@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use clap::builder::TypedValueParser;
-use darkroot::{Inspection, Key, ProfileStore, Settings, recipe};
+use darkroot::{Inspection, Key, ProfileStore, Settings, settings};
 use darkroot_raw::Decoder;
 
 use crate::{Outcome, picture};
@@ -41,7 +41,7 @@ pub(crate) struct Inspect {
 }
 
 fn decoder() -> impl TypedValueParser<Value = Decoder> {
-    picture::words(Key::Decoder).try_map(|text| recipe::text::decoder(&text))
+    picture::words(Key::named("decoder")).try_map(|text| settings::text::decoder(&text))
 }
 
 impl Inspect {

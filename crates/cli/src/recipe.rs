@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
+use darkroot::settings::{Changes, Kind, SETTINGS, Setting};
 use darkroot::{Effective, Key};
 use serde_json::{Map, Value, json};
 
@@ -27,10 +28,18 @@ pub(crate) struct Recipe {
     /// A line of JSON for each file
     #[arg(long)]
     json: bool,
+
+    /// Describe every setting as JSON instead: its values, its default, what it changes
+    #[arg(long, conflicts_with = "files")]
+    describe: bool,
 }
 
 impl Recipe {
     pub(crate) fn run(self) -> Result<Outcome> {
+        if self.describe {
+            writeln!(std::io::stdout(), "{:#}", description())?;
+            return Ok(Outcome::Done);
+        }
         let mut layers = self.picture.layers()?;
         let mut recipes = Vec::new();
         for file in &self.files {
@@ -65,8 +74,44 @@ fn as_json(file: Option<&Path>, effective: &Effective) -> Value {
         }
         (key.name().to_owned(), value)
     };
-    let settings: Map<String, Value> = Key::ALL.into_iter().map(one).collect();
+    let settings: Map<String, Value> = Key::all().map(one).collect();
     json!({ "file": file.map(Path::to_string_lossy), "settings": settings })
+}
+
+/// The table of settings, for programs that offer them to a person.
+fn description() -> Value {
+    let one = |setting: &Setting| {
+        let mut about = json!({
+            "name": setting.name,
+            "default": value(Key::named(setting.name), setting.default),
+            "help": setting.help,
+            "allowed": setting.allowed(),
+            "changes": match setting.changes {
+                Changes::Encoding => "encoding",
+                Changes::Picture => "picture",
+                Changes::Photo => "photo",
+            },
+        });
+        match setting.kind {
+            Kind::Words(words) => {
+                about["type"] = "word".into();
+                about["words"] = words.iter().map(|w| json!({ "word": w.word, "help": w.help })).collect();
+            }
+            Kind::Switch => about["type"] = "switch".into(),
+            Kind::Number { least, most, whole, unit } => {
+                about["type"] = if whole { "whole number" } else { "number" }.into();
+                about["range"] = json!([least, most]);
+                about["unit"] = unit.into();
+            }
+            Kind::Text { .. } => about["type"] = "text".into(),
+            Kind::File(words) => {
+                about["type"] = "file".into();
+                about["words"] = words.iter().map(|word| json!({ "word": word, "help": "" })).collect();
+            }
+        }
+        about
+    };
+    SETTINGS.iter().map(one).collect()
 }
 
 /// Numbers and switches as such.

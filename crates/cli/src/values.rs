@@ -1,11 +1,11 @@
 //! Values of options that are more than a word from a list and no settings of a picture.
 
-use darkroot::recipe;
+use darkroot::settings::{self, NotAValue};
 use darkroot_develop::OutputSpace;
 
 /// `--space`.
-pub(crate) fn space(text: &str) -> Result<OutputSpace, recipe::NotAValue> {
-    recipe::text::space(text)
+pub(crate) fn space(text: &str) -> Result<OutputSpace, NotAValue> {
+    settings::text::space(text)
 }
 
 /// `--model`.
@@ -16,7 +16,7 @@ pub(crate) fn kind(text: &str) -> Result<darkroot_profile::Kind, String> {
 /// `--corners`.
 pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 4], String> {
     let usage = || format!("`{text}` is not four corners: write x,y,x,y,x,y,x,y in pixels");
-    let numbers = recipe::text::numbers::<f64>(text).ok_or_else(usage)?;
+    let numbers = settings::text::numbers::<f64>(text).ok_or_else(usage)?;
     match numbers[..] {
         [a, b, c, d, e, f, g, h] if numbers.iter().all(|n| n.is_finite()) => {
             Ok([[a, b], [c, d], [e, f], [g, h]])

@@ -18,10 +18,10 @@
 //! **What it does not do:** it prints nothing and reads no arguments.
 
 pub mod settings;
-pub use settings::{Engine, ProfileChoice, Settings, SettingsError};
+pub use settings::{Engine, Key, NotAValue, ProfileChoice, Settings, SettingsError};
 
 pub mod recipe;
-pub use recipe::{Effective, Key, Layer, Layers, Origin, RecipeError};
+pub use recipe::{Effective, Layer, Layers, Origin, RecipeError};
 
 pub mod batch;
 

@@ -217,7 +217,7 @@ impl Render<'_> {
             fringe::cut(&mosaic, border, &plan.highlights, &mut camera);
             camera
         } else {
-            reduce::reduce(&mosaic, border, bin, self.grid.reduction.as_ref())
+            reduce::reduce(&mosaic, border, bin, begin, self.grid.reduction.as_ref())
         };
         drop(mosaic);
         if !plan.picture_corrections.is_empty() {

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use darkroot_encode::Format;
 
-use super::{Key, Layer, Origin, RecipeError, text};
+use super::{Layer, Origin, RecipeError};
 use crate::naming::{NamingError, Target};
-use crate::settings::Settings;
+use crate::settings::{Key, Settings};
 
 /// Every key with its text and its origin.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,7 +20,7 @@ impl Default for Effective {
     /// The defaults.
     fn default() -> Self {
         let value = |key: Key| (key, (key.default_text().to_owned(), Origin::Default));
-        Self { values: Key::ALL.map(value).into() }
+        Self { values: Key::all().map(value).collect() }
     }
 }
 
@@ -46,7 +46,7 @@ impl Effective {
         let mut settings = Settings::default();
         for (key, (text, _)) in &self.values {
             let key = *key;
-            text::apply(key, text, &mut settings).map_err(|wrong| RecipeError::Flag { key, wrong })?;
+            key.apply(text, &mut settings).map_err(|wrong| RecipeError::Flag { key, wrong })?;
         }
         Ok(settings)
     }
@@ -58,7 +58,7 @@ impl Effective {
     /// Nobody says a format but a name whose ending is none.
     pub fn format(&self, target: &Target, settings: &Settings, flags: &Layer) -> Result<Format, NamingError> {
         let asked = settings.format;
-        let by_flag = flags.get(Key::Format).is_some_and(|text| text != "auto");
+        let by_flag = flags.get(Key::FORMAT).is_some_and(|text| text != "auto");
         match (asked, target.format()) {
             (Some(format), _) if by_flag => Ok(format),
             (_, Ok(Some(format))) => Ok(format),
@@ -133,8 +133,7 @@ fn written(key: Key, text: &str) -> String {
         return text.to_owned();
     }
     // A recipe may be put anywhere, and what is relative in it is relative to its place.
-    let file = key == Key::Profile && !matches!(text, "auto" | "matrix");
-    let absolute = file.then(|| std::path::absolute(text).ok()).flatten();
+    let absolute = key.is_file(text).then(|| std::path::absolute(text).ok()).flatten();
     let text = absolute.as_deref().and_then(Path::to_str).unwrap_or(text);
     toml::Value::from(text).to_string()
 }
@@ -142,6 +141,7 @@ fn written(key: Key, text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::SETTINGS;
 
     fn with(values: &[(Key, &str)]) -> (Effective, Layer) {
         let flags = Layer::flags(values.iter().map(|(key, text)| (*key, (*text).to_owned()))).unwrap();
@@ -152,10 +152,13 @@ mod tests {
 
     #[test]
     fn texts_make_the_same_settings_in_another_process() {
-        let (effective, _) =
-            with(&[(Key::Exposure, "0.50"), (Key::WhiteBalance, "5200K,+8"), (Key::Bits, "16")]);
+        let (effective, _) = with(&[
+            (Key::named("exposure"), "0.50"),
+            (Key::named("white-balance"), "5200K,+8"),
+            (Key::named("bits"), "16"),
+        ]);
         let texts = effective.texts();
-        assert_eq!((texts.len(), texts["exposure"].as_str()), (Key::ALL.len(), "0.5"));
+        assert_eq!((texts.len(), texts["exposure"].as_str()), (SETTINGS.len(), "0.5"));
         let again = Effective::from_texts(&texts).unwrap();
         assert_eq!(again.texts(), texts);
         let debug = |e: &Effective| format!("{:?}", e.settings().unwrap());
@@ -174,8 +177,8 @@ mod tests {
     fn the_format_is_what_the_flag_says_then_the_ending_then_a_recipe() {
         let nobody = Layer::flags([]).unwrap();
         let format = |recipe: &str, flag: Option<&str>, target: &str| {
-            let (mut effective, _) = with(&[(Key::Format, recipe)]);
-            let flags = flag.map(|f| Layer::flags([(Key::Format, f.to_owned())]).unwrap());
+            let (mut effective, _) = with(&[(Key::named("format"), recipe)]);
+            let flags = flag.map(|f| Layer::flags([(Key::named("format"), f.to_owned())]).unwrap());
             let flags = flags.as_ref().unwrap_or(&nobody);
             effective.lay(flags);
             effective.format(&Target::parse(target), &effective.settings().unwrap(), flags)
@@ -192,10 +195,13 @@ mod tests {
 
     #[test]
     fn a_recipe_that_is_written_can_be_read() {
-        let (effective, _) =
-            with(&[(Key::WhiteBalance, "2.1,1,1.5"), (Key::Profile, "a \"b\".toml"), (Key::Exposure, "-1")]);
+        let (effective, _) = with(&[
+            (Key::named("white-balance"), "2.1,1,1.5"),
+            (Key::named("profile"), "a \"b\".toml"),
+            (Key::named("exposure"), "-1"),
+        ]);
         let table: toml::Table = effective.to_toml(|p| p.display().to_string()).parse().unwrap();
-        assert_eq!(table.len(), Key::ALL.len());
+        assert_eq!(table.len(), SETTINGS.len());
         assert_eq!(table["exposure"].as_integer(), Some(-1));
         assert_eq!(table["white-balance"].as_str(), Some("2.1,1,1.5"));
         assert!(Path::new(table["profile"].as_str().unwrap()).is_absolute());

@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::key::Key;
 use super::layers::FOLDER_FILE;
-use super::text::NotAValue;
+use crate::settings::{Key, NotAValue};
 
 /// Settings that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -67,7 +66,7 @@ pub enum RecipeError {
         wrong: NotAValue,
     },
     /// A value that the flag does not have.
-    #[error("`--{key}`: {wrong}")]
+    #[error("`{key}`: {wrong}")]
     Flag {
         /// The key.
         key: Key,
@@ -86,7 +85,7 @@ pub enum RecipeError {
         line: usize,
     },
     /// A profile where a recipe should be.
-    #[error("{path}: is a camera profile, not a recipe; name it with `--profile`", path = path.display())]
+    #[error("{path}: is a camera profile, not a recipe", path = path.display())]
     Profile {
         /// The file.
         path: PathBuf,

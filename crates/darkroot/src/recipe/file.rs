@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
-use super::text::{self, NotAValue};
-use super::{Key, Layer, Origin, RecipeError};
+use super::{Layer, Origin, RecipeError};
+use crate::settings::{Key, NotAValue};
 
 /// No recipe is as large as that, in bytes.
 const LARGEST: u64 = 1 << 20;
@@ -106,7 +106,7 @@ fn parse(path: &Path, text: &str, origin: Origin) -> Result<FolderFile, RecipeEr
                 line,
                 name: name.to_owned(),
                 found: kind(value),
-                allowed: example(key),
+                allowed: key.setting().example(),
             });
         };
         let set = beside(key, &text, &path).and_then(|text| found.layer.set(key, &text));
@@ -151,41 +151,16 @@ fn kind(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// How a value of the key is written.
-fn example(key: Key) -> String {
-    let words = text::words(key);
-    let list = || words.iter().map(|w| format!("\"{}\"", w.word)).collect::<Vec<_>>().join(", ");
-    match key {
-        Key::AutoExposure => "true or false".to_owned(),
-        Key::Bits | Key::Quality | Key::Chroma => {
-            format!("a number such as {}", if key == Key::Bits { "16" } else { key.default_text() })
-        }
-        Key::Exposure => "a number such as 0.5".to_owned(),
-        Key::WhiteBalance => "a text in quotes such as \"5200K\" or \"2.1,1,1.5\"".to_owned(),
-        Key::Space => "a text in quotes such as \"adobe-rgb\"".to_owned(),
-        Key::Profile => "a text in quotes such as \"camera.toml\"".to_owned(),
-        Key::Format
-        | Key::Look
-        | Key::Highlights
-        | Key::Demosaic
-        | Key::Crop
-        | Key::Engine
-        | Key::Decoder => {
-            format!("one of these, in quotes: {}", list())
-        }
-    }
-}
-
 /// The text, or for a relative path to a profile the path from the recipe's own place.
 fn beside(key: Key, text: &str, recipe: &Path) -> Result<String, NotAValue> {
-    if key != Key::Profile || matches!(text, "" | "auto" | "matrix") {
+    if !key.is_file(text) {
         return Ok(text.to_owned());
     }
     let recipe = std::path::absolute(recipe).unwrap_or_else(|_| recipe.to_owned());
     let path = recipe.parent().unwrap_or(Path::new("")).join(text);
     match path.to_str() {
         Some(path) => Ok(path.to_owned()),
-        None => Err(text::not_utf8(text)),
+        None => Err(NotAValue::not_utf8(text)),
     }
 }
 
@@ -207,21 +182,21 @@ mod tests {
         .unwrap();
         assert!(found.root);
         let is = |key, text| assert_eq!(found.layer.get(key), Some(text));
-        is(Key::Bits, "16");
-        is(Key::Exposure, "-0.5");
-        is(Key::Chroma, "420");
-        is(Key::AutoExposure, "true");
-        is(Key::WhiteBalance, "5200K,+8");
-        is(Key::Profile, "/photos/cameras/d750.toml");
-        is(Key::Quality, "80");
-        assert_eq!(found.layer.get(Key::Look), None);
+        is(Key::named("bits"), "16");
+        is(Key::named("exposure"), "-0.5");
+        is(Key::named("chroma"), "420");
+        is(Key::named("auto-exposure"), "true");
+        is(Key::named("white-balance"), "5200K,+8");
+        is(Key::named("profile"), "/photos/cameras/d750.toml");
+        is(Key::named("quality"), "80");
+        assert_eq!(found.layer.get(Key::named("look")), None);
     }
 
     #[test]
     fn auto_and_matrix_are_words_and_no_profiles_beside_the_recipe() {
         for word in ["auto", "matrix"] {
             let found = parsed(&format!("profile = \"{word}\"")).unwrap();
-            assert_eq!(found.layer.get(Key::Profile), Some(word));
+            assert_eq!(found.layer.get(Key::named("profile")), Some(word));
         }
     }
 

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use super::text;
-use super::{Key, RecipeError};
+use super::RecipeError;
+use crate::settings::{Key, NotAValue};
 
 /// Where a value comes from, in rising priority.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Origin {
     Default,
     /// A `darkroot.toml` in the file's folder or above.
     Folder(PathBuf),
-    /// The recipe that was named with `--recipe`.
+    /// The recipe that was named.
     Recipe(PathBuf),
     /// The command line.
     Flag,
@@ -78,8 +78,8 @@ impl Layer {
         Self { origin, values: BTreeMap::new() }
     }
 
-    pub(super) fn set(&mut self, key: Key, text: &str) -> Result<(), text::NotAValue> {
-        self.values.insert(key, text::checked(key, text)?);
+    pub(super) fn set(&mut self, key: Key, text: &str) -> Result<(), NotAValue> {
+        self.values.insert(key, key.checked(text)?);
         Ok(())
     }
 

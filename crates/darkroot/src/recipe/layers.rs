@@ -107,6 +107,7 @@ impl Layers {
 mod tests {
     use super::super::Key;
     use super::*;
+    use crate::settings::Key;
 
     /// A folder of files with these texts.
     fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
@@ -136,25 +137,25 @@ mod tests {
             ("roll/a.nef.darkroot.toml", "exposure = 5"),
         ]);
         let recipe = place.path().join("recipe.toml");
-        let flags = [(Key::Exposure, "4"), (Key::Look, "neutral")];
+        let flags = [(Key::named("exposure"), "4"), (Key::named("look"), "neutral")];
         let effective = layers(Some(&recipe), &flags).for_file(&place.path().join("roll/a.nef")).unwrap();
         for (key, text, origin) in [
-            (Key::Exposure, "5", "sidecar"),
-            (Key::Look, "neutral", "flag"),
-            (Key::Quality, "82", "recipe"),
-            (Key::Bits, "8", "folder"),
-            (Key::Crop, "active", "folder"),
-            (Key::Space, "auto", "default"),
+            (Key::named("exposure"), "5", "sidecar"),
+            (Key::named("look"), "neutral", "flag"),
+            (Key::named("quality"), "82", "recipe"),
+            (Key::named("bits"), "8", "folder"),
+            (Key::named("crop"), "active", "folder"),
+            (Key::named("space"), "auto", "default"),
         ] {
             let (found, from) = effective.get(key);
             assert_eq!((found, from.name()), (text, origin), "{key}");
         }
         let files: Vec<_> = effective.files().iter().map(|(o, keys)| (o.name(), keys.clone())).collect();
         let expected = [
-            ("folder", vec![Key::Crop]),
-            ("folder", vec![Key::Bits]),
-            ("recipe", vec![Key::Quality]),
-            ("sidecar", vec![Key::Exposure]),
+            ("folder", vec![Key::named("crop")]),
+            ("folder", vec![Key::named("bits")]),
+            ("recipe", vec![Key::named("quality")]),
+            ("sidecar", vec![Key::named("exposure")]),
         ];
         assert_eq!(files, expected);
         assert!((effective.settings().unwrap().recipe.exposure.stops - 5.0).abs() < 1e-12);
@@ -168,9 +169,9 @@ mod tests {
             ("a/b/darkroot.toml", "quality = 50"),
         ]);
         let effective = layers(None, &[]).for_file(&place.path().join("a/b/x.nef")).unwrap();
-        assert_eq!(effective.get(Key::Look), ("neutral", &Origin::Default));
-        assert_eq!(effective.get(Key::Exposure).0, "1");
-        assert_eq!(effective.get(Key::Quality).0, "50");
+        assert_eq!(effective.get(Key::named("look")), ("neutral", &Origin::Default));
+        assert_eq!(effective.get(Key::named("exposure")).0, "1");
+        assert_eq!(effective.get(Key::named("quality")).0, "50");
     }
 
     #[test]
@@ -182,7 +183,7 @@ mod tests {
         ]);
         let look = |path: &str| {
             let effective = layers(None, &[]).for_file(&place.path().join(path)).unwrap();
-            effective.get(Key::Look).0.to_owned()
+            effective.get(Key::named("look")).0.to_owned()
         };
         assert_eq!(look("one/../two/x.nef"), "vivid");
         #[cfg(unix)]
@@ -202,8 +203,8 @@ mod tests {
         let recipe = place.path().join("recipe.toml");
         let mut layers = Layers::new(Some(&recipe), Layer::flags([]).unwrap(), false).unwrap();
         let effective = layers.for_file(&place.path().join("a.nef")).unwrap();
-        assert_eq!(effective.get(Key::Exposure), ("3", &Origin::Recipe(recipe)));
-        assert_eq!(effective.get(Key::Look).1, &Origin::Default);
+        assert_eq!(effective.get(Key::named("exposure")), ("3", &Origin::Recipe(recipe)));
+        assert_eq!(effective.get(Key::named("look")).1, &Origin::Default);
     }
 
     #[test]

@@ -1,12 +1,13 @@
 //! Settings as layers: what holds for a file, and who said so.
 //!
 //! ```no_run
-//! use darkroot::recipe::{Key, Layer, Layers};
+//! use darkroot::Key;
+//! use darkroot::recipe::{Layer, Layers};
 //!
-//! let flags = Layer::flags([(Key::Exposure, "0.5".to_owned())])?;
+//! let flags = Layer::flags([(Key::named("exposure"), "0.5".to_owned())])?;
 //! let mut layers = Layers::new(None, flags, true)?;
 //! let effective = layers.for_file("roll/DSC_0001.NEF".as_ref())?;
-//! let (look, origin) = effective.get(Key::Look);
+//! let (look, origin) = effective.get(Key::named("look"));
 //! println!("{look} ({origin})");
 //! let settings = effective.settings()?;
 //! # Ok::<(), darkroot::recipe::RecipeError>(())
@@ -14,10 +15,7 @@
 //!
 //! In rising priority: defaults, `darkroot.toml` in the folders above the file (the nearer folder counts more),
 //! the recipe that was named, flags, and the sidecar `DSC_0001.NEF.darkroot.toml` beside the file. Each layer
-//! holds texts as a person writes them on the command line; [`text`] is the one place that knows what they mean.
-
-pub mod key;
-pub use key::Key;
+//! holds texts as a person writes them on the command line; the table of [`settings`](crate::settings) knows what they mean.
 
 pub mod layer;
 pub use layer::{Layer, Origin};
@@ -27,9 +25,6 @@ pub use layers::{FOLDER_FILE, Layers, sidecar};
 
 pub mod effective;
 pub use effective::Effective;
-
-pub mod text;
-pub use text::{NotAValue, Word};
 
 pub mod error;
 pub use error::RecipeError;

@@ -79,11 +79,12 @@ fn kernel_of(cfa: &Cfa, side: usize, at: (usize, usize)) -> [Vec<Tap>; 3] {
 }
 
 /// Reduces the inner part of a balanced mosaic: `border` pixels, at least [`BORDER`], are cut off on each side, and what
-/// is left becomes one pixel for each square of `bin` pixels.
+/// is left becomes one pixel for each square of `bin` pixels. `begin` is the place in the frame at which the mosaic begins.
 pub fn reduce(
     mosaic: &Mosaic<f32>,
     border: usize,
     bin: usize,
+    begin: (isize, isize),
     reduction: Option<&Reduction>,
 ) -> Rgb<CameraSpace> {
     let inner = |v: usize| (v - 2 * border) / bin;
@@ -92,7 +93,7 @@ pub fn reduce(
         (Layout::Cfa(_), Some(reduction)) => {
             let side = reduction.side;
             let squares = Size { width: size.width * bin / side, height: size.height * bin / side };
-            let picture = predict(mosaic, border, reduction, squares);
+            let picture = predict(mosaic, border, begin, reduction, squares);
             mean(picture.planes(), squares.width, bin / side, size)
         }
         (layout, _) => {
@@ -108,14 +109,23 @@ pub fn reduce(
     }
 }
 
-fn predict(mosaic: &Mosaic<f32>, border: usize, reduction: &Reduction, size: Size) -> Rgb<CameraSpace> {
+fn predict(
+    mosaic: &Mosaic<f32>,
+    border: usize,
+    begin: (isize, isize),
+    reduction: &Reduction,
+    size: Size,
+) -> Rgb<CameraSpace> {
     let mut picture = Rgb::black(size);
     let (width, side) = (mosaic.size.width, reduction.side);
     let planes = picture.planes_mut();
     for y in 0..size.height {
         for x in 0..size.width {
             let (u, v) = (x * side + border - BORDER, y * side + border - BORDER);
-            let (cx, cy) = (u % reduction.period.0, v % reduction.period.1);
+            let phase = |at: usize, begin: isize, period: usize| {
+                (at as isize + begin).rem_euclid(period as isize) as usize
+            };
+            let (cx, cy) = (phase(u, begin.0, reduction.period.0), phase(v, begin.1, reduction.period.1));
             let kernel = &reduction.kernels[cy * reduction.period.0 + cx];
             for c in 0..3 {
                 planes[c][y * size.width + x] =

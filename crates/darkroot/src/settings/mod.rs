@@ -1,4 +1,18 @@
 //! Everything a person can ask for when developing files, checked once.
+//!
+//! [`table`] has every setting with its name, values, default and words for people; [`Settings`] is what they mean.
+
+pub mod table;
+pub use table::{Changes, Group, Kind, SETTINGS, Setting, Word};
+
+pub mod key;
+pub use key::Key;
+
+pub mod text;
+pub use text::NotAValue;
+
+pub mod spaces;
+pub use spaces::{SPACES, space};
 
 use std::path::PathBuf;
 
@@ -59,11 +73,11 @@ pub struct Settings {
 }
 
 /// Settings that contradict each other. Each message says what to do.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {
     /// The format cannot hold that many bits.
-    #[error("{format} cannot hold {bits} bits a sample, only {allowed}; choose another `--bits` or format")]
+    #[error("{format} cannot hold {bits} bits a sample, only {allowed}")]
     Bits {
         /// The format.
         format: &'static str,
@@ -73,36 +87,30 @@ pub enum SettingsError {
         allowed: String,
     },
     /// The format cannot hold the space.
-    #[error("{reason}")]
-    Space {
-        /// Why not and what to do.
-        reason: String,
-    },
+    #[error(transparent)]
+    Space(#[from] darkroot_encode::Error),
     /// Linear light in 8 bits.
-    #[error(
-        "{format} cannot hold linear light: 8 bits are too coarse for it; write a .tif or .exr file, or choose another \
-         `--look`"
-    )]
+    #[error("{format} cannot hold linear light: 8 bits are too coarse for it; write a .tif or .exr file")]
     LinearInEightBits {
         /// The format.
         format: &'static str,
     },
     /// A curve on top of the linear look.
     #[error(
-        "`--look linear` keeps numbers proportional to light, but {space} bends them; use `--space {space}-linear`"
+        "the linear look keeps numbers proportional to light, but {space} bends them; use {space}-linear"
     )]
     CurveOnLinear {
         /// The space.
         space: String,
     },
     /// Camera RGB in an integer format.
-    #[error("`--space camera` is for measurement: write a 32-bit .tif or an .exr file")]
+    #[error("camera RGB is for measurement: write a 32-bit .tif or an .exr file")]
     CameraNeedsFloat,
     /// Options that the second engine does not have.
-    #[error("`--engine imagepipe` has its own fixed rendering in sRGB: leave out {option}")]
+    #[error("imagepipe has its own fixed rendering in sRGB: leave out {}", settings.join(", "))]
     Engine {
-        /// What it cannot do.
-        option: &'static str,
+        /// Names of the settings that it does not heed.
+        settings: Vec<&'static str>,
     },
 }
 
@@ -151,13 +159,13 @@ impl Settings {
         let space = match recipe.output.space {
             OutputSpace::Rgb(space) => {
                 if linear && space.curve != darkroot_colour::TransferCurve::Linear {
-                    return Err(SettingsError::CurveOnLinear { space: crate::settings::space_name(&space) });
+                    return Err(SettingsError::CurveOnLinear { space: spaces::space_name(&space) });
                 }
                 PictureSpace::Rgb(space)
             }
             OutputSpace::Camera => PictureSpace::Camera,
         };
-        format.accepts(&space).map_err(|e| SettingsError::Space { reason: e.to_string() })?;
+        format.accepts(&space)?;
         if self.engine == Engine::Imagepipe {
             check_imagepipe(self, &recipe)?;
         }
@@ -166,48 +174,20 @@ impl Settings {
 }
 
 fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
-    let plain = Recipe { output: recipe.output, ..Recipe::default() };
-    let refuse = |option| Err(SettingsError::Engine { option });
-    if settings.profile != ProfileChoice::Automatic {
-        return refuse("`--profile`");
-    }
-    if recipe.output.space != OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB) {
-        return refuse("`--space`");
-    }
-    if recipe.output.bits == Bits::Float {
-        return refuse("`--bits 32`");
-    }
-    if *recipe != plain {
-        return refuse("the options of looks, exposure, white balance, highlights, demosaicing and crop");
-    }
-    Ok(())
-}
-
-/// The spaces that a person can name, without the `-linear` ending.
-pub const SPACES: [(&str, darkroot_colour::RgbSpace); 6] = [
-    ("srgb", darkroot_colour::RgbSpace::SRGB),
-    ("display-p3", darkroot_colour::RgbSpace::DISPLAY_P3),
-    ("adobe-rgb", darkroot_colour::RgbSpace::ADOBE_RGB),
-    ("prophoto", darkroot_colour::RgbSpace::PROPHOTO),
-    ("rec2020", darkroot_colour::RgbSpace::REC2020),
-    ("ecirgb-v2", darkroot_colour::RgbSpace::ECIRGB_V2),
-];
-
-/// The space of a name: one of [`SPACES`], each also with `-linear`, `aces2065-1` or `camera`.
-pub fn space(name: &str) -> Option<OutputSpace> {
-    if name == "camera" {
-        return Some(OutputSpace::Camera);
-    }
-    if name == "aces2065-1" {
-        return Some(OutputSpace::Rgb(darkroot_colour::RgbSpace::ACES2065_1));
-    }
-    let (base, linear) = name.strip_suffix("-linear").map_or((name, false), |base| (base, true));
-    let (_, space) = SPACES.iter().find(|(n, _)| *n == base)?;
-    Some(OutputSpace::Rgb(if linear { space.linear() } else { *space }))
-}
-
-fn space_name(space: &darkroot_colour::RgbSpace) -> String {
-    SPACES.iter().find(|(_, s)| s.primaries == space.primaries).map_or(space.name, |(n, _)| n).to_owned()
+    let fixed = Recipe::default();
+    let heeded = [
+        ("profile", settings.profile == ProfileChoice::Automatic),
+        ("space", recipe.output.space == OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB)),
+        ("bits", recipe.output.bits != Bits::Float),
+        ("look", recipe.look == fixed.look),
+        ("exposure", recipe.exposure == fixed.exposure),
+        ("white-balance", recipe.balance == fixed.balance),
+        ("highlights", recipe.highlights == fixed.highlights),
+        ("demosaic", recipe.demosaic == fixed.demosaic),
+        ("crop", recipe.crop == fixed.crop),
+    ];
+    let unheeded: Vec<&str> = heeded.iter().filter(|(_, fits)| !fits).map(|(name, _)| *name).collect();
+    if unheeded.is_empty() { Ok(()) } else { Err(SettingsError::Engine { settings: unheeded }) }
 }
 
 #[cfg(test)]
@@ -227,25 +207,16 @@ mod tests {
     }
 
     #[test]
-    fn contradictions_say_what_to_do() {
+    fn contradictions_are_said() {
         for (settings, format, word) in [
-            (settings(Look::Linear, None, None), Format::Jpeg, "--look"),
+            (settings(Look::Linear, None, None), Format::Jpeg, ".exr"),
             (settings(Look::Linear, Some("adobe-rgb"), None), Format::Tiff, "adobe-rgb-linear"),
             (settings(Look::Neutral, Some("camera"), None), Format::Jpeg, ".exr"),
-            (settings(Look::Neutral, None, Some(Bits::Sixteen)), Format::Jpeg, "--bits"),
+            (settings(Look::Neutral, None, Some(Bits::Sixteen)), Format::Jpeg, "16 bits"),
             (settings(Look::Neutral, Some("adobe-rgb"), None), Format::Exr, "linear"),
         ] {
             let message = settings.resolve(format).unwrap_err().to_string();
             assert!(message.contains(word), "{message}");
         }
-    }
-
-    #[test]
-    fn every_space_has_a_linear_form() {
-        for (name, plain) in SPACES {
-            assert_eq!(space(name), Some(OutputSpace::Rgb(plain)));
-            assert_eq!(space(&format!("{name}-linear")), Some(OutputSpace::Rgb(plain.linear())));
-        }
-        assert_eq!(space("srgb-lines"), None);
     }
 }
