@@ -66,6 +66,8 @@ pub use shot::{Shot, ShotOptions};
 
 pub mod verify;
 
+pub mod page;
+
 pub mod report;
 
 pub mod make_profile;

@@ -2,7 +2,7 @@
 
 mod plots;
 mod shown;
-pub(crate) use shown::base64;
+pub(crate) use crate::page::base64;
 
 use std::fmt::Write as _;
 
