@@ -53,7 +53,7 @@ impl Chart {
             let found = match find_charts(file, &layouts, &settings) {
                 Ok(found) => found,
                 Err(fault) => {
-                    crate::say(format_args!("error: {fault}"));
+                    crate::say(format_args!("error: {}", crate::hint::words(&fault)));
                     outcome = Outcome::SomeFailed;
                     continue;
                 }

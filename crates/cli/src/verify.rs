@@ -86,14 +86,15 @@ impl Verify {
         let found = match verify(&profile, &request, &Settings::default()) {
             Ok(found) => found,
             Err(fault) => {
-                crate::say(format_args!("error: {fault}"));
+                crate::say(format_args!("error: {}", crate::hint::words(&fault)));
                 return Ok(Outcome::SomeFailed);
             }
         };
+        let judgement = &found.judgement;
         let own = Limits { mean: self.max_mean, max: self.max, ..Limits::default() };
-        let mut broken = own.broken(&found);
-        broken.extend(self.preset.iter().flat_map(|preset| preset.broken(&found)));
-        let s = found.errors.de2000;
+        let mut broken = own.broken(judgement);
+        broken.extend(self.preset.iter().flat_map(|preset| preset.broken(judgement)));
+        let s = judgement.errors.de2000;
         if !common.quiet {
             crate::say(format_args!(
                 "{}: dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2}",
@@ -103,20 +104,20 @@ impl Verify {
                 s.p95,
                 s.max
             ));
-            if let Some(promised) = found.promised {
+            if let Some(promised) = judgement.promised {
                 crate::say(format_args!(
                     "  the profile promises mean {:.2}, max {:.2} for colours it has not seen",
                     promised.mean, promised.max
                 ));
             }
-            let mut worst: Vec<_> = found.patches.iter().filter(|p| p.excluded.is_none()).collect();
+            let mut worst: Vec<_> = judgement.patches.iter().filter(|p| p.excluded.is_none()).collect();
             worst.sort_by(|a, b| b.de2000.total_cmp(&a.de2000));
             let worst: Vec<String> =
                 worst.iter().take(5).map(|p| format!("{} {:.2}", p.name, p.de2000)).collect();
             crate::say(format_args!("  worst: {}", worst.join(", ")));
         }
         if let Some(log) = &self.log {
-            let brightest = found
+            let brightest = judgement
                 .patches
                 .iter()
                 .zip(&found.shot.patches)

@@ -38,7 +38,7 @@ pub mod spectra;
 pub use spectra::SpectraFile;
 
 pub mod light;
-pub use light::NamedLight;
+pub use light::LightSource;
 
 pub mod from_spectra;
 pub use from_spectra::{FromSpectra, from_spectra};
@@ -47,14 +47,13 @@ pub mod evaluate;
 
 pub mod export;
 
-pub mod calibrate;
-pub use calibrate::{Calibrated, MeasuredPatch, calibrate};
-
 pub mod store;
 pub use store::ProfileStore;
 
 pub mod error;
 pub use error::Error;
+
+pub mod fault;
 
 pub mod charts;
 

@@ -1,8 +1,9 @@
 //! The places of all patches from the edges of all patches.
 
+use darkroot_colour::statistics::median;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::pixels::Picture;
+use super::pixels::SearchImage;
 use super::placement::{Candidate, Family};
 use crate::Homography;
 
@@ -33,7 +34,7 @@ const HUBER: f64 = 0.02;
 const IN_PLACE: f64 = 0.1;
 
 /// `None` when the edges do not determine the chart.
-pub(super) fn refine(picture: &Picture, candidate: &Candidate, family: &Family) -> Option<Refined> {
+pub(super) fn refine(picture: &SearchImage, candidate: &Candidate, family: &Family) -> Option<Refined> {
     let columns = family.columns();
     let rows = family.layout().rows;
     let mut now = Refined { map: candidate.map, half: [candidate.fill / 2.0; 2], error: 1.0, seen: 0.0 };
@@ -53,8 +54,7 @@ pub(super) fn refine(picture: &Picture, candidate: &Candidate, family: &Family) 
     let mut errors: Vec<f64> =
         edges.iter().map(|e| (e.residual(&back, now.half) / (2.0 * now.half[e.axis])).powi(2)).collect();
     let seen = errors.iter().filter(|e| **e < IN_PLACE * IN_PLACE / 4.0).count() as f64;
-    errors.sort_by(f64::total_cmp);
-    now.error = errors.get(errors.len() / 2)?.sqrt();
+    now.error = median(&mut errors)?.sqrt();
     now.seen = seen / total;
     Some(now)
 }
@@ -220,14 +220,14 @@ fn fitted(now: &Refined, edges: &[Edge]) -> Option<Refined> {
 struct View {
     origin: [f64; 2],
     factor: usize,
-    picture: Picture,
+    picture: SearchImage,
 }
 
 /// Largest side of a view in pixels.
 const LARGEST_VIEW: usize = 3000;
 
 impl View {
-    fn of(picture: &Picture, candidate: &Candidate, factor: usize) -> Option<Self> {
+    fn of(picture: &SearchImage, candidate: &Candidate, factor: usize) -> Option<Self> {
         let corners = candidate.corners();
         let range = |k: usize, limit: usize| {
             let [low, high] =
@@ -261,7 +261,7 @@ impl View {
             }
             small
         });
-        Some(Self { origin: [x0 as f64, y0 as f64], factor, picture: Picture { width, height, planes } })
+        Some(Self { origin: [x0 as f64, y0 as f64], factor, picture: SearchImage { width, height, planes } })
     }
 
     /// Logarithm of the light at a point of the whole picture.
