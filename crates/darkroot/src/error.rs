@@ -113,7 +113,7 @@ pub enum Error {
     NoLight,
     /// The profile is for another camera.
     #[error(
-        "{path}: is a profile for {of}, but {input} was taken with {camera}; choose another `--profile`, or add the \
+        "{path}: is a profile for {of}, but {input} was taken with {camera}; choose another profile, or add the \
          camera to its `aliases` if they are the same", path = path.display(), input = input.display()
     )]
     OtherCamera {

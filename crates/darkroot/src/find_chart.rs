@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use darkroot_chart::{ChartLayout, Found, Options, Quad, Rejected, Search, SearchImage, measure, windows};
+pub use darkroot_chart::Found;
+use darkroot_chart::{ChartLayout, Options, Quad, Rejected, Search, SearchImage, measure, windows};
 use darkroot_colour::RgbSpace;
 use darkroot_photo::metadata::Metadata;
 use darkroot_photo::{PictureSpace, Samples, Size};

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use darkroot_calibrate::judge::{Judgement, judge};
+use darkroot_calibrate::judge::judge;
 use darkroot_profile::{Profile, Summary};
 use maud::{Markup, html};
 
-pub use darkroot_calibrate::judge::{Broken, Limits, PRESETS};
+pub use darkroot_calibrate::judge::{Broken, Judgement, Limits, PRESETS};
 
 use crate::fault::ChartError;
 use crate::make_profile::ChartRequest;

@@ -146,6 +146,17 @@ fn edge(
         .windows(5)
         .map(|w| (0..3).map(|c| f64::from(w[4][c] - w[0][c]).powi(2)).sum::<f64>().sqrt())
         .collect();
+    let (t, height) = peak(&slope, spacing, reach)?;
+    let mut p = centre;
+    p[other] += now.half[other] * along;
+    p[axis] += side * now.half[axis] + t;
+    let at = now.map.apply(p);
+    let weight = (height / 0.3).min(1.0);
+    at.iter().all(|v| v.is_finite()).then_some(Edge { at, axis, place: centre[axis], side, weight })
+}
+
+/// Place and height of the peak of a slope that lies within `reach` of the middle, those near the middle favoured.
+fn peak(slope: &[f64], spacing: f64, reach: f64) -> Option<(f64, f64)> {
     let half_count = (slope.len() - 1) as f64 / 2.0;
     let place = |i: usize| (i as f64 - half_count) * spacing;
     let favoured = |i: usize| slope[i] * (-0.5 * (place(i) / (0.6 * reach)).powi(2)).exp();
@@ -155,20 +166,13 @@ fn edge(
     if slope[best] < WEAKEST || best == 0 || best + 1 == slope.len() {
         return None;
     }
-    // The middle of the peak.
     let (mut sum, mut moment) = (0.0, 0.0);
     for (i, slope) in slope.iter().enumerate().skip(best.saturating_sub(2)).take(5) {
         let weight = slope * slope;
         sum += weight;
         moment += weight * place(i);
     }
-    let t = moment / sum;
-    let mut p = centre;
-    p[other] += now.half[other] * along;
-    p[axis] += side * now.half[axis] + t;
-    let at = now.map.apply(p);
-    let weight = (slope[best] / 0.3).min(1.0);
-    at.iter().all(|v| v.is_finite()).then_some(Edge { at, axis, place: centre[axis], side, weight })
+    Some((moment / sum, slope[best]))
 }
 
 /// Fits the map back from pixels to steps and half a patch's size to the edges.
