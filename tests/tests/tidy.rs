@@ -13,7 +13,7 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 /// Which of our crates each crate uses, as `docs/architecture.md` has it. Tests and benches may use any.
-const ARROWS: [(&str, &[&str]); 11] = [
+const ARROWS: [(&str, &[&str]); 12] = [
     ("colour", &[]),
     ("photo", &["colour"]),
     ("profile", &["colour"]),
@@ -22,14 +22,15 @@ const ARROWS: [(&str, &[&str]); 11] = [
     ("chart", &["colour", "photo"]),
     ("simulate", &["colour", "photo"]),
     ("develop", &["colour", "photo", "profile"]),
-    ("darkroot", &["chart", "colour", "develop", "encode", "photo", "profile", "raw"]),
+    ("calibrate", &["chart", "colour", "photo", "profile"]),
+    ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "photo", "profile", "raw"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
     ("cli", &["colour", "darkroot", "develop", "profile", "raw"]),
     ("tests", &["chart", "colour", "darkroot", "develop", "photo", "profile", "simulate"]),
 ];
 
 /// Crates that must stay pure: no files, no clock, no environment (architecture, invariant 7).
-const PURE: [&str; 5] = ["colour", "photo", "profile", "chart", "develop"];
+const PURE: [&str; 6] = ["colour", "photo", "profile", "chart", "calibrate", "develop"];
 
 fn metadata() -> serde_json::Value {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use darkroot_chart::{Found, Layout, Options, detect};
+use darkroot_chart::{ChartLayout, Found, Options, detect};
 
 #[path = "../tests/labelled/mod.rs"]
 mod labelled;
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("which folder of labelled charts?")?;
     let overlays = arguments.next();
-    let layouts = Layout::builtin();
+    let layouts = ChartLayout::builtin();
     let mut totals = labelled::Totals::default();
     println!("{:44} {:>10} {:>7} {:>8} {:>7} {:>5}", "picture", "label", "usable", "error", "turned", "ms");
     for photo in labelled::read(Path::new(&folder))? {

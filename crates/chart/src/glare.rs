@@ -95,14 +95,14 @@ impl ChannelLight {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Layout;
+    use crate::ChartLayout;
     use crate::builtin_reference::builtin;
     use crate::windows::places;
 
     fn chart() -> (Vec<[f64; 2]>, Vec<Xyz>) {
         let colours = builtin("classic24").unwrap();
         let expected = colours.iter().map(|(_, lab)| lab.xyz(white::D50)).collect();
-        (places(&Layout::by_name("classic24").unwrap()), expected)
+        (places(&ChartLayout::by_name("classic24").unwrap()), expected)
     }
 
     const SLOPE: Slope = Slope { across: 0.08, down: -0.03 };

@@ -10,7 +10,7 @@ mod argyll;
 
 /// A chart of patches in a regular grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct ChartLayout {
     /// Name on the command line ("classic24").
     pub name: String,
     /// Name for people ("ColorChecker Classic, 24 patches").
@@ -97,12 +97,12 @@ pub(crate) const TABLES: [(&str, &str); 7] = [
     ("spyder48.csv", include_str!("../data/spyder48.csv")),
 ];
 
-static LAYOUTS: LazyLock<Vec<Layout>> = LazyLock::new(|| {
+static LAYOUTS: LazyLock<Vec<ChartLayout>> = LazyLock::new(|| {
     let listed: Listed = toml::from_str(BUILT_IN).unwrap_or_default();
     listed.layout.into_iter().filter_map(|stored| stored.layout().ok()).collect()
 });
 
-impl Layout {
+impl ChartLayout {
     /// The charts Darkroot knows.
     pub fn builtin() -> Vec<Self> {
         LAYOUTS.clone()
@@ -196,12 +196,12 @@ struct Stored {
 }
 
 impl Stored {
-    fn layout(self) -> Result<Layout, LayoutError> {
+    fn layout(self) -> Result<ChartLayout, LayoutError> {
         let text = TABLES.iter().find(|(name, _)| *name == self.patches).map(|(_, text)| *text);
         let rows = text.and_then(table).ok_or(LayoutError::NoColour(self.patches))?;
         let patches = rows.into_iter().map(|(name, lab)| PatchPlace { name, lab }).collect();
         let Self { name, title, columns, rows, gap, hinge, .. } = Self { patches: String::new(), ..self };
-        Layout { name, title, columns, rows, gap, hinge, patches }.checked()
+        ChartLayout { name, title, columns, rows, gap, hinge, patches }.checked()
     }
 }
 
@@ -230,7 +230,7 @@ mod tests {
 
     #[test]
     fn every_built_in_layout_is_read() {
-        let names: Vec<String> = Layout::builtin().into_iter().map(|l| l.name).collect();
+        let names: Vec<String> = ChartLayout::builtin().into_iter().map(|l| l.name).collect();
         let all = [
             "classic24",
             "passport24",
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn the_classic_begins_with_dark_skin_and_ends_with_black() {
-        let classic = Layout::by_name("classic24").unwrap();
+        let classic = ChartLayout::by_name("classic24").unwrap();
         assert_eq!(classic.patches[0].name, "dark skin");
         assert_eq!(classic.patches[23].name, "black");
         assert!(classic.patches[18].lab.l > 95.0);
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn a_hinge_moves_the_columns_behind_it() {
-        let spyder = Layout::by_name("spyder48").unwrap();
+        let spyder = ChartLayout::by_name("spyder48").unwrap();
         assert!((spyder.column_edges(4)[0] - spyder.column_edges(3)[1] - 1.77).abs() < 1e-9);
     }
 
@@ -265,14 +265,17 @@ mod tests {
         for name in ["A1", "B1", "A2", "B2"] {
             text += &format!("[[patch]]\nname = \"{name}\"\nlab = [50, 10, -10.5]\n");
         }
-        let layout = Layout::from_toml(&text).unwrap();
+        let layout = ChartLayout::from_toml(&text).unwrap();
         assert_eq!((layout.columns, layout.patches.len(), layout.title.as_str()), (2, 4, "mine"));
         let short = text.replace("rows = 2", "rows = 3");
-        assert_eq!(Layout::from_toml(&short), Err(LayoutError::Count { patches: 4, columns: 2, rows: 3 }));
         assert_eq!(
-            Layout::from_toml(&text.replace("gap = 0.1", "gap = nan")),
+            ChartLayout::from_toml(&short),
+            Err(LayoutError::Count { patches: 4, columns: 2, rows: 3 })
+        );
+        assert_eq!(
+            ChartLayout::from_toml(&text.replace("gap = 0.1", "gap = nan")),
             Err(LayoutError::Range("the gap"))
         );
-        assert!(matches!(Layout::from_toml("columns = 2"), Err(LayoutError::Toml(_))));
+        assert!(matches!(ChartLayout::from_toml("columns = 2"), Err(LayoutError::Toml(_))));
     }
 }

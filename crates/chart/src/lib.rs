@@ -3,7 +3,7 @@
 //! **What it does not do:** it reads no files and fits no colours; text comes from the caller, fits are in `profile`.
 
 pub mod layout;
-pub use layout::{Layout, PatchPlace};
+pub use layout::{ChartLayout, PatchPlace};
 
 pub mod measure;
 pub use measure::{Measurement, measure};
@@ -25,7 +25,7 @@ pub mod windows;
 pub mod builtin_reference;
 
 pub mod detect;
-pub use detect::{Found, Options, Picture, Rejected, Search};
+pub use detect::{Found, Options, Rejected, Search, SearchImage};
 
 pub mod geometry;
 pub use geometry::{Homography, Quad};

@@ -1,6 +1,7 @@
 //! What a camera made of a chart's patches, from the samples of the sensor as they are: nothing is interpolated, so no
 //! patch mixes with its neighbours.
 
+use darkroot_colour::statistics::median;
 use darkroot_photo::{Layout, Mosaic};
 use rayon::prelude::*;
 
@@ -92,8 +93,9 @@ struct Robust {
 impl Robust {
     fn of(samples: &[Sample]) -> Self {
         let values: Vec<f64> = samples.iter().map(|s| s.value).filter(|v| v.is_finite()).collect();
-        let middle = median(values.clone());
-        let spread = MAD_TO_SIGMA * median(values.iter().map(|v| (v - middle).abs()).collect());
+        let middle = median(&mut values.clone()).unwrap_or(0.0);
+        let mut distances: Vec<f64> = values.iter().map(|v| (v - middle).abs()).collect();
+        let spread = MAD_TO_SIGMA * median(&mut distances).unwrap_or(0.0);
         // A patch without noise (simulated, or quantised) has no spread; then only its own value belongs to it.
         let reach = OUTLIER * spread.max(1e-6);
         let (low, high) = (middle - reach, middle + reach);
@@ -104,15 +106,6 @@ impl Robust {
             kept.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count.saturating_sub(1).max(1) as f64;
         Self { mean, deviation: variance.sqrt(), count, low, high }
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    let (_, m, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    *m
 }
 
 /// Relative change of the values across the window, from a plane fitted to them.

@@ -4,6 +4,7 @@
 //! Two Gaussian steps are fitted to that profile: their places are known but for a common shift, their heights and their
 //! common spread are not. So gaps that blur has filled tell as much as open ones.
 
+use darkroot_colour::statistics::median_by;
 use darkroot_photo::Mosaic;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
@@ -40,22 +41,18 @@ pub fn edge_width(
     columns: usize,
 ) -> Option<EdgeWidth> {
     let along = |step: usize, down: bool| {
-        let widths: Vec<EdgeWidth> = (0..patches.len())
+        let mut widths: Vec<EdgeWidth> = (0..patches.len())
             .into_par_iter()
             .filter(|i| down || (i + 1) % columns.max(1) != 0)
             .filter_map(|i| width(light, saturation, &patches[i], patches.get(i + step)?, down))
             .collect();
-        median(widths)
+        let told = widths.len() >= FEWEST;
+        if told { median_by(&mut widths, |a, b| a.patch.total_cmp(&b.patch)) } else { None }
     };
     match (along(1, false), along(columns, true)) {
         (Some(across), Some(down)) => Some(if across.patch > down.patch { across } else { down }),
         (one, other) => one.or(other),
     }
-}
-
-fn median(mut widths: Vec<EdgeWidth>) -> Option<EdgeWidth> {
-    widths.sort_by(|a, b| a.patch.total_cmp(&b.patch));
-    if widths.len() < FEWEST { None } else { widths.get(widths.len() / 2).copied() }
 }
 
 /// Width of the edges between two patches, one right of or below the other.

@@ -1,10 +1,10 @@
 //! Where the patches of a chart lie in a picture once its corners are known.
 
-use crate::{Homography, Layout, Quad};
+use crate::{ChartLayout, Homography, Quad};
 
 /// The part of every patch that is measured: `inset` of a patch's side is left out at each edge (0.2 leaves the middle
 /// 60 %). `corners` are the outer corners of the corner patches. `None` when they are no quadrilateral.
-pub fn windows(layout: &Layout, corners: &Quad, inset: f64) -> Option<Vec<Quad>> {
+pub fn windows(layout: &ChartLayout, corners: &Quad, inset: f64) -> Option<Vec<Quad>> {
     let map = Homography::onto(corners)?;
     // Edges are in patch widths; the map takes the unit square.
     let (width, height) = (layout.column_edges(layout.columns - 1)[1], layout.row_edges(layout.rows - 1)[1]);
@@ -25,7 +25,7 @@ pub fn windows(layout: &Layout, corners: &Quad, inset: f64) -> Option<Vec<Quad>>
 }
 
 /// Middle of each patch on the chart itself: x and y from -1 (left, top) to 1.
-pub fn places(layout: &Layout) -> Vec<[f64; 2]> {
+pub fn places(layout: &ChartLayout) -> Vec<[f64; 2]> {
     let along = |i: usize, n: usize| if n < 2 { 0.0 } else { 2.0 * i as f64 / (n - 1) as f64 - 1.0 };
     (0..layout.columns * layout.rows)
         .map(|i| [along(i % layout.columns, layout.columns), along(i / layout.columns, layout.rows)])
@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn windows_lie_inside_of_their_patches() {
-        let layout = Layout::by_name("classic24").unwrap();
+        let layout = ChartLayout::by_name("classic24").unwrap();
         let corners = [[0.0, 0.0], [600.0, 0.0], [600.0, 400.0], [0.0, 400.0]];
         let all = windows(&layout, &corners, 0.2).unwrap();
         assert_eq!(all.len(), 24);
@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn places_reach_from_edge_to_edge() {
-        let places = places(&Layout::by_name("classic24").unwrap());
+        let places = places(&ChartLayout::by_name("classic24").unwrap());
         assert_eq!((places[0], places[23]), ([-1.0, -1.0], [1.0, 1.0]));
     }
 }

@@ -1,13 +1,13 @@
 //! Things with rows and columns that are no charts: none of them may be taken for one.
 
-use darkroot_chart::{Found, Layout, Options, detect};
+use darkroot_chart::{ChartLayout, Found, Options, detect};
 use rayon::prelude::*;
 
 mod scene;
 use scene::clutter::{KINDS, picture};
 
 fn invented(kind: &str, number: u64) -> Vec<Found> {
-    detect::find(&picture(kind, number), &Layout::builtin(), &Options::default())
+    detect::find(&picture(kind, number), &ChartLayout::builtin(), &Options::default())
 }
 
 fn no_chart_is_invented_in(each: u64) {

@@ -1,14 +1,14 @@
 //! Pictures that are broken, empty or extreme: no panic and no chart.
 
-use darkroot_chart::{Layout, Options, Picture, detect};
+use darkroot_chart::{ChartLayout, Options, SearchImage, detect};
 
 mod scene;
 use scene::Random;
 
 fn nothing_in(width: usize, height: usize, value: impl FnMut() -> f32) {
     let plane: Vec<f32> = std::iter::repeat_with(value).take(width * height).collect();
-    let picture = Picture { width, height, planes: [plane.clone(), plane.clone(), plane] };
-    let search = detect::search(&picture, &Layout::builtin(), &Options::default());
+    let picture = SearchImage { width, height, planes: [plane.clone(), plane.clone(), plane] };
+    let search = detect::search(&picture, &ChartLayout::builtin(), &Options::default());
     assert!(search.found.is_empty());
     assert!(search.rejected.is_some_and(|r| !r.reason.is_empty()));
 }
@@ -41,18 +41,19 @@ fn noise_with_values_that_are_no_numbers_holds_no_chart() {
 
 #[test]
 fn planes_of_another_size_hold_no_chart() {
-    let picture = Picture { width: 100, height: 100, planes: [vec![0.5; 10_000], vec![0.5; 10_000], vec![]] };
-    assert!(detect::find(&picture, &Layout::builtin(), &Options::default()).is_empty());
-    let huge = Picture { width: usize::MAX, height: 3, planes: [vec![], vec![], vec![]] };
-    assert!(detect::find(&huge, &Layout::builtin(), &Options::default()).is_empty());
+    let picture =
+        SearchImage { width: 100, height: 100, planes: [vec![0.5; 10_000], vec![0.5; 10_000], vec![]] };
+    assert!(detect::find(&picture, &ChartLayout::builtin(), &Options::default()).is_empty());
+    let huge = SearchImage { width: usize::MAX, height: 3, planes: [vec![], vec![], vec![]] };
+    assert!(detect::find(&huge, &ChartLayout::builtin(), &Options::default()).is_empty());
 }
 
 #[test]
 fn strange_options_do_no_harm() {
-    let picture = Picture { width: 60, height: 50, planes: [0; 3].map(|_| vec![0.5; 3000]) };
+    let picture = SearchImage { width: 60, height: 50, planes: [0; 3].map(|_| vec![0.5; 3000]) };
     for search_side in [0, 1, usize::MAX] {
         let options = Options { search_side, most: 0 };
-        assert!(detect::find(&picture, &Layout::builtin(), &options).is_empty());
+        assert!(detect::find(&picture, &ChartLayout::builtin(), &options).is_empty());
         assert!(detect::find(&picture, &[], &options).is_empty());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use darkroot_chart::{Layout, Options, detect};
+use darkroot_chart::{ChartLayout, Options, detect};
 use rayon::prelude::*;
 
 mod labelled;
@@ -21,7 +21,7 @@ fn folder() -> Option<PathBuf> {
 fn every_usable_chart_is_found_the_right_way_round_and_none_is_invented() {
     let Some(folder) = folder() else { return };
     let photos = labelled::read(&folder).unwrap();
-    let layouts = Layout::builtin();
+    let layouts = ChartLayout::builtin();
     let searched: Vec<_> = photos
         .par_iter()
         .map(|p| detect::find(&labelled::open(&p.path).unwrap(), &layouts, &Options::default()))

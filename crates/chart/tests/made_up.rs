@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up shall fail")]
 
-use darkroot_chart::{Found, Homography, Layout, Options, Picture, detect};
+use darkroot_chart::{ChartLayout, Found, Homography, Options, SearchImage, detect};
 use rayon::prelude::*;
 
 mod scene;
@@ -11,7 +11,7 @@ use scene::{Random, Shot, hash};
 const FRAME: [usize; 2] = [900, 600];
 
 struct Truth {
-    layout: Layout,
+    layout: ChartLayout,
     map: Homography,
 }
 
@@ -37,9 +37,9 @@ impl Truth {
     }
 }
 
-fn chart(name: &str, seed: u64, share: f64, change: impl Fn(&mut Shot)) -> (Truth, Picture) {
+fn chart(name: &str, seed: u64, share: f64, change: impl Fn(&mut Shot)) -> (Truth, SearchImage) {
     let mut random = Random(hash(seed, 3, name.bytes().map(i64::from).sum()));
-    let layout = Layout::by_name(name).unwrap();
+    let layout = ChartLayout::by_name(name).unwrap();
     let extent = scene::extent(&layout);
     let degrees = random.within(-180.0, 180.0);
     let quad = scene::placed(&mut random, FRAME, extent, share, degrees);
@@ -59,7 +59,7 @@ fn check(name: &str, count: u64, share: [f64; 2], change: impl Fn(&mut Shot) + S
         .map(|seed| {
             let share = share[0] + (share[1] - share[0]) * seed as f64 / count as f64;
             let (truth, picture) = chart(name, seed, share, &change);
-            let search = detect::search(&picture, &Layout::builtin(), &Options::default());
+            let search = detect::search(&picture, &ChartLayout::builtin(), &Options::default());
             let (mut hit, mut wrong) = (false, Vec::new());
             for found in &search.found {
                 match truth.error(found) {
@@ -123,7 +123,7 @@ fn a_dim_and_noisy_chart_is_found() {
 #[test]
 fn both_of_two_charts_are_found() {
     let mut random = Random(11);
-    let layout = Layout::by_name("classic24").unwrap();
+    let layout = ChartLayout::by_name("classic24").unwrap();
     let extent = scene::extent(&layout);
     let chart = scene::chart_before(&layout, &scene::colours(&layout), scene::blotches(4, 3.0));
     // The second stands on its head to the right.
@@ -131,7 +131,7 @@ fn both_of_two_charts_are_found() {
         move |x: f64, y: f64| if x < 8.0 { chart(x, y) } else { chart(9.0 + extent[0] - x, extent[1] - y) };
     let map = Homography::scale_shift([45.0, 45.0], [80.0, 180.0]);
     let picture = Shot::some(&mut random, FRAME, map).picture(&mut random, &pattern);
-    let mut turns: Vec<i32> = detect::find(&picture, &Layout::builtin(), &Options::default())
+    let mut turns: Vec<i32> = detect::find(&picture, &ChartLayout::builtin(), &Options::default())
         .iter()
         .map(|f| f.rotation_degrees.abs().round() as i32)
         .collect();
@@ -144,7 +144,7 @@ fn the_number_of_threads_changes_nothing() {
     let (_, picture) = chart("passport24", 2, 0.4, |_| {});
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| detect::search(&picture, &Layout::builtin(), &Options::default()))
+        pool.install(|| detect::search(&picture, &ChartLayout::builtin(), &Options::default()))
     };
     let one = with(1);
     assert_eq!(one.found.len(), 1);
@@ -156,7 +156,7 @@ fn a_chart_that_is_cut_off_is_refused_in_words() {
     let (_, picture) = chart("classic24", 1, 0.5, |shot| {
         shot.map = Homography::scale_shift([60.0, 60.0], [-80.0, 150.0]);
     });
-    let search = detect::search(&picture, &Layout::builtin(), &Options::default());
+    let search = detect::search(&picture, &ChartLayout::builtin(), &Options::default());
     assert!(search.found.is_empty(), "{:?}", search.found);
     assert!(
         search.rejected.is_some_and(|r| r.reason.contains("in the picture") || r.reason.contains("beyond"))

@@ -1,11 +1,11 @@
 //! `darkroot chart`.
 
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use darkroot::find_chart::preview;
+use darkroot::find_chart::{Found, FoundCharts, preview};
 use darkroot::{Settings, charts, find_charts};
 use serde_json::json;
 
@@ -53,7 +53,7 @@ impl Chart {
             let found = match find_charts(file, &layouts, &settings) {
                 Ok(found) => found,
                 Err(fault) => {
-                    crate::say(format_args!("error: {fault}"));
+                    crate::say(format_args!("error: {}", crate::hint::words(&fault)));
                     outcome = Outcome::SomeFailed;
                     continue;
                 }
@@ -61,52 +61,51 @@ impl Chart {
             if let Some(output) = &self.preview {
                 preview(file, &found, output, self.overwrite, &settings)?;
             }
-            let reason = found.search.rejected.as_ref().map(|r| r.reason.clone());
-            if self.json {
-                let charts: Vec<_> = found
-                    .search
-                    .found
-                    .iter()
-                    .map(|c| {
-                        json!({
-                            "chart": c.layout,
-                            "corners": c.corners,
-                            "confidence": c.confidence,
-                            "rotation": c.rotation_degrees,
-                            "patch_pixels": c.patch_pixels,
-                            "gap": c.gap,
-                            "grid": [c.columns, c.rows],
-                            "centres": (0..c.columns * c.rows).map(|i| c.centre(i)).collect::<Vec<_>>(),
-                        })
-                    })
-                    .collect();
-                let line = json!({
-                    "file": file.display().to_string(),
-                    "size": [found.size.width, found.size.height],
-                    "charts": charts,
-                    "refused": reason,
-                });
-                writeln!(out, "{line}")?;
-                continue;
-            }
-            for c in &found.search.found {
-                let corners: Vec<String> = c.corners.iter().flatten().map(|v| format!("{v:.1}")).collect();
-                writeln!(
-                    out,
-                    "{}: {} turned by {:.0} degrees, confidence {:.2}, patches of {:.0} pixels, corners {}",
-                    file.display(),
-                    c.layout,
-                    c.rotation_degrees,
-                    c.confidence,
-                    c.patch_pixels,
-                    corners.join(",")
-                )?;
-            }
-            if found.search.found.is_empty() {
-                let reason = reason.map_or_else(String::new, |r| format!(": {r}"));
-                writeln!(out, "{}: no chart{reason}", file.display())?;
-            }
+            let line = if self.json { json(file, &found).to_string() } else { words(file, &found) };
+            writeln!(out, "{line}")?;
         }
         Ok(outcome)
     }
+}
+
+fn json(file: &Path, found: &FoundCharts) -> serde_json::Value {
+    let chart = |c: &Found| {
+        json!({
+            "chart": c.layout,
+            "corners": c.corners,
+            "confidence": c.confidence,
+            "rotation": c.rotation_degrees,
+            "patch_pixels": c.patch_pixels,
+            "gap": c.gap,
+            "grid": [c.columns, c.rows],
+            "centres": (0..c.columns * c.rows).map(|i| c.centre(i)).collect::<Vec<_>>(),
+        })
+    };
+    json!({
+        "file": file.display().to_string(),
+        "size": [found.size.width, found.size.height],
+        "charts": found.search.found.iter().map(chart).collect::<Vec<_>>(),
+        "refused": found.search.rejected.as_ref().map(|r| &r.reason),
+    })
+}
+
+/// A line for each chart, or one that says why there is none.
+fn words(file: &Path, found: &FoundCharts) -> String {
+    let file = file.display();
+    let chart = |c: &Found| {
+        let corners: Vec<String> = c.corners.iter().flatten().map(|v| format!("{v:.1}")).collect();
+        format!(
+            "{file}: {} turned by {:.0} degrees, confidence {:.2}, patches of {:.0} pixels, corners {}",
+            c.layout,
+            c.rotation_degrees,
+            c.confidence,
+            c.patch_pixels,
+            corners.join(",")
+        )
+    };
+    if found.search.found.is_empty() {
+        let reason = found.search.rejected.as_ref().map_or_else(String::new, |r| format!(": {}", r.reason));
+        return format!("{file}: no chart{reason}");
+    }
+    found.search.found.iter().map(chart).collect::<Vec<_>>().join("\n")
 }

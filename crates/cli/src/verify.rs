@@ -1,10 +1,12 @@
 //! `darkroot verify`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use darkroot::verify::{Limits, LogLine, PRESETS, append, history, read_log, verify};
+use darkroot::verify::{
+    Judgement, Limits, LogLine, PRESETS, Verification, append, history, read_log, verify,
+};
 use darkroot::{Settings, write_text};
 
 use crate::profile::{ShotArgs, store};
@@ -86,57 +88,59 @@ impl Verify {
         let found = match verify(&profile, &request, &Settings::default()) {
             Ok(found) => found,
             Err(fault) => {
-                crate::say(format_args!("error: {fault}"));
+                crate::say(format_args!("error: {}", crate::hint::words(&fault)));
                 return Ok(Outcome::SomeFailed);
             }
         };
+        let judgement = &found.judgement;
         let own = Limits { mean: self.max_mean, max: self.max, ..Limits::default() };
-        let mut broken = own.broken(&found);
-        broken.extend(self.preset.iter().flat_map(|preset| preset.broken(&found)));
-        let s = found.errors.de2000;
+        let mut broken = own.broken(judgement);
+        broken.extend(self.preset.iter().flat_map(|preset| preset.broken(judgement)));
         if !common.quiet {
-            crate::say(format_args!(
-                "{}: dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2}",
-                file.display(),
-                s.mean,
-                s.median,
-                s.p95,
-                s.max
-            ));
-            if let Some(promised) = found.promised {
-                crate::say(format_args!(
-                    "  the profile promises mean {:.2}, max {:.2} for colours it has not seen",
-                    promised.mean, promised.max
-                ));
-            }
-            let mut worst: Vec<_> = found.patches.iter().filter(|p| p.excluded.is_none()).collect();
-            worst.sort_by(|a, b| b.de2000.total_cmp(&a.de2000));
-            let worst: Vec<String> =
-                worst.iter().take(5).map(|p| format!("{} {:.2}", p.name, p.de2000)).collect();
-            crate::say(format_args!("  worst: {}", worst.join(", ")));
+            say(file, judgement);
         }
         if let Some(log) = &self.log {
-            let brightest = found
-                .patches
-                .iter()
-                .zip(&found.shot.patches)
-                .max_by(|(a, _), (b, _)| a.reference.y.total_cmp(&b.reference.y));
-            append(
-                log,
-                &LogLine {
-                    date: self.date.clone(),
-                    file: file.clone(),
-                    camera: profile.camera().name(),
-                    light: self.light.clone(),
-                    de2000: s,
-                    white: brightest.map_or([0.0; 3], |(_, p)| p.rgb),
-                    passed: broken.is_empty(),
-                },
-            )?;
+            append(log, &self.log_line(file, profile.camera().name(), &found, broken.is_empty()))?;
         }
         for fault in &broken {
             crate::say(format_args!("error: {}: {fault}", file.display()));
         }
         Ok(if broken.is_empty() { Outcome::Done } else { Outcome::Rejected })
     }
+
+    fn log_line(&self, file: &Path, camera: String, found: &Verification, passed: bool) -> LogLine {
+        let patches = found.judgement.patches.iter().zip(&found.shot.patches);
+        let brightest = patches.max_by(|(a, _), (b, _)| a.reference.y.total_cmp(&b.reference.y));
+        LogLine {
+            date: self.date.clone(),
+            file: file.to_owned(),
+            camera,
+            light: self.light.clone(),
+            de2000: found.judgement.errors.de2000,
+            white: brightest.map_or([0.0; 3], |(_, p)| p.rgb),
+            passed,
+        }
+    }
+}
+
+fn say(file: &Path, judgement: &Judgement) {
+    let s = judgement.errors.de2000;
+    crate::say(format_args!(
+        "{}: dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2}",
+        file.display(),
+        s.mean,
+        s.median,
+        s.p95,
+        s.max
+    ));
+    if let Some(promised) = judgement.promised {
+        crate::say(format_args!(
+            "  the profile promises mean {:.2}, max {:.2} for colours it has not seen",
+            promised.mean, promised.max
+        ));
+    }
+    let mut worst: Vec<_> = judgement.patches.iter().filter(|p| p.excluded.is_none()).collect();
+    worst.sort_by(|a, b| b.de2000.total_cmp(&a.de2000));
+    let worst: Vec<String> = worst.iter().take(5).map(|p| format!("{} {:.2}", p.name, p.de2000)).collect();
+    crate::say(format_args!("  worst: {}", worst.join(", ")));
 }

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use darkroot_chart::{Layout, Reference, ReferenceColour};
+use darkroot_chart::{ChartLayout, Reference, ReferenceColour};
 use sha2::{Digest, Sha256};
 
 use crate::Error;
+use crate::fault::ChartError;
 
 /// A reference and where it is from.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,16 +20,16 @@ pub struct NamedReference {
 }
 
 /// Every chart that is built in.
-pub fn layouts() -> Vec<Layout> {
-    Layout::builtin()
+pub fn layouts() -> Vec<ChartLayout> {
+    ChartLayout::builtin()
 }
 
 /// The layout of a chart: one that is built in, or a file that describes one (TOML or Argyll's `.cht`).
 ///
 /// # Errors
 /// Neither of both, or a file that describes none.
-pub fn layout(text: &str) -> Result<Layout, Error> {
-    if let Some(layout) = Layout::by_name(text) {
+pub fn layout(text: &str) -> Result<ChartLayout, Error> {
+    if let Some(layout) = ChartLayout::by_name(text) {
         return Ok(layout);
     }
     let path = Path::new(text);
@@ -36,27 +37,32 @@ pub fn layout(text: &str) -> Result<Layout, Error> {
         let content = std::fs::read_to_string(path).map_err(|e| Error::read(path, &e))?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-        let read = if toml { Layout::from_toml(&content) } else { Layout::from_cht(&stem, &content) };
-        return read.map_err(|e| Error::Chart { path: path.to_owned(), what: e.to_string() });
+        let read =
+            if toml { ChartLayout::from_toml(&content) } else { ChartLayout::from_cht(&stem, &content) };
+        return read.map_err(|e| Error::chart(path, e));
     }
-    let names: Vec<String> = Layout::builtin().into_iter().map(|l| l.name).collect();
-    let what = format!("is no chart; known are {}, or a file that describes one", names.join(", "));
-    Err(Error::Chart { path: path.to_owned(), what })
+    Err(Error::chart(path, ChartError::UnknownChart))
+}
+
+/// Names of the charts that are built in.
+pub(crate) fn names() -> String {
+    let names: Vec<String> = ChartLayout::builtin().into_iter().map(|l| l.name).collect();
+    names.join(", ")
 }
 
 /// The reference colours of a chart: a file, one that is built in by name, or the built-in one of the layout.
 ///
 /// # Errors
 /// Neither of both, a file that cannot be used, or a chart without a built-in reference.
-pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, Error> {
-    let fault = |what: String| Err(Error::Chart { path: text.unwrap_or(&layout.name).into(), what });
+pub fn reference(text: Option<&str>, layout: &ChartLayout) -> Result<NamedReference, Error> {
+    let fault = |fault: ChartError| Err(Error::chart(Path::new(text.unwrap_or(&layout.name)), fault));
     let built_in = |name: &str| {
         let patches = darkroot_chart::builtin_reference::builtin(name)?;
         let patches = patches.into_iter().map(|(n, lab)| (n, ReferenceColour::Lab(lab))).collect();
         Some(NamedReference { colours: Reference { patches }, name: name.to_owned(), sha256: String::new() })
     };
     // Charts of the 24 classic patches have one reference, whatever their size.
-    let own_reference = |layout: &Layout| match layout.name.as_str() {
+    let own_reference = |layout: &ChartLayout| match layout.name.as_str() {
         "classic24" | "passport24" | "mini24" | "nano24" => Some("classic24"),
         "sg140" => Some("sg140"),
         _ => None,
@@ -64,10 +70,7 @@ pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, 
     let Some(text) = text else {
         return match own_reference(layout).and_then(built_in) {
             Some(found) => Ok(found),
-            None => fault(format!(
-                "has no built-in reference; give one with `--reference` (a file, or {})",
-                darkroot_chart::builtin_reference::names().collect::<Vec<_>>().join(", ")
-            )),
+            None => fault(ChartError::NoReference),
         };
     };
     if let Some(found) = built_in(text) {
@@ -77,11 +80,11 @@ pub fn reference(text: Option<&str>, layout: &Layout) -> Result<NamedReference, 
     let bytes = std::fs::read(path).map_err(|e| Error::read(path, &e))?;
     let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
     let Ok(content) = String::from_utf8(bytes) else {
-        return fault("is not text; known are CGATS, CxF 3 and CSV".to_owned());
+        return fault(ChartError::NotText);
     };
     let colours = match Reference::parse(&content) {
         Ok(colours) => colours,
-        Err(e) => return fault(e.to_string()),
+        Err(e) => return fault(e.into()),
     };
     Ok(NamedReference {
         colours,

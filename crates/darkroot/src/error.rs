@@ -3,6 +3,10 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use darkroot_calibrate::{CalibrateError, LightSource};
+
+use crate::fault::{ChartError, NeutralError, SpectraError};
+
 /// Why a file could not be developed or inspected.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -48,49 +52,45 @@ pub enum Error {
         source: darkroot_profile::export::Error,
     },
     /// A file of spectra is unusable.
-    #[error("{path}: {what}", path = path.display())]
+    #[error("{path}: {source}", path = path.display())]
     Spectra {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, with what to do.
-        what: String,
+        /// What is wrong with it.
+        source: SpectraError,
     },
     /// Neither a profile file nor a camera with a profile.
-    #[error(
-        "{text}: is neither a profile file nor a camera with a profile; `darkroot profile list` shows these"
-    )]
+    #[error("{text}: is neither a profile file nor a camera with a profile")]
     NoProfile {
         /// As it was given.
         text: String,
     },
     /// A shot of a chart cannot be used.
-    #[error("{path}: {what}", path = path.display())]
+    #[error("{path}: {source}", path = path.display())]
     Chart {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with what to do.
-        what: String,
+        /// What is wrong.
+        source: ChartError,
     },
     /// A raw file that does not say what an export needs.
-    #[error("{path}: {what}", path = path.display())]
+    #[error("{path}: {source}", path = path.display())]
     Neutral {
         /// The file.
         path: PathBuf,
-        /// What is missing, with what to do.
-        what: String,
+        /// What is missing.
+        source: NeutralError,
     },
     /// A light that nobody knows.
-    #[error("`{text}` is no light; known are {names}")]
+    #[error("`{text}` is no light; known are {}", crate::light::known())]
     Light {
         /// As it was given.
         text: String,
-        /// What could have been given.
-        names: String,
     },
     /// Two shots under one light at one exposure, and nobody said what they are for.
     #[error(
-        "{one} and {other} were both taken under {light} and at one exposure; add `--average` to take the mean of them, \
-         or give the light of each with its own `--light`", one = one.display(), other = other.display()
+        "{one} and {other} were both taken under {light} and at one exposure: they can be averaged, or one of them has \
+         another light", one = one.display(), other = other.display()
     )]
     SeveralShots {
         /// One of the shots.
@@ -101,19 +101,19 @@ pub enum Error {
         light: String,
     },
     /// A model cannot be fitted.
-    #[error("the profile for {light} cannot be made: {what}")]
+    #[error("the profile for {light} cannot be made: {source}")]
     Fit {
         /// Name of the light.
         light: String,
-        /// What is wrong, with what to do.
-        what: String,
+        /// What is wrong.
+        source: CalibrateError,
     },
     /// A profile for no light at all.
-    #[error("a profile needs a light; name one with `--light`")]
+    #[error("a profile needs a light")]
     NoLight,
     /// The profile is for another camera.
     #[error(
-        "{path}: is a profile for {of}, but the picture was taken with {camera}; choose another, or add the camera to its \
+        "{path}: is a profile for {of}, but the picture was taken with {camera}; choose another profile, or add the camera to its \
          `aliases` if they are the same", path = path.display()
     )]
     OtherCamera {
@@ -181,6 +181,18 @@ pub enum Error {
 }
 
 impl Error {
+    pub(crate) fn chart(path: &Path, source: impl Into<ChartError>) -> Self {
+        Self::Chart { path: path.to_owned(), source: source.into() }
+    }
+
+    pub(crate) fn spectra(path: &Path, source: SpectraError) -> Self {
+        Self::Spectra { path: path.to_owned(), source }
+    }
+
+    pub(crate) fn fit(light: &LightSource, source: CalibrateError) -> Self {
+        Self::Fit { light: light.light.name.clone(), source }
+    }
+
     pub(crate) fn read(path: &Path, error: &io::Error) -> Self {
         let reason = match error.kind() {
             io::ErrorKind::NotFound => "there is no such file; check the name".to_owned(),

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use darkroot_calibrate::CalibrateError;
 use darkroot_colour::{Spectrum, Xyz};
 use darkroot_profile::fit::{Samples, plain};
 use darkroot_profile::spectra::in_31_channels;
 use darkroot_profile::{Errors, Kind, Order, Summary};
 
-use crate::light::NamedLight;
+use crate::fault::SpectraError;
+use crate::light::LightSource;
 use crate::{Error, spectra};
 
 /// Models of the papers, in their sequence.
@@ -46,10 +48,8 @@ pub struct Row {
 /// # Errors
 /// Another form, files that cannot be used, names that the file does not have.
 pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
-    let (name, place) = text.split_once('=').ok_or_else(|| Error::Spectra {
-        path: text.into(),
-        what: "is no set; write NAME=FILE.csv or NAME=FILE.csv:LIST.txt".to_owned(),
-    })?;
+    let (name, place) =
+        text.split_once('=').ok_or_else(|| Error::spectra(Path::new(text), SpectraError::NoSet))?;
     let (file, list) = match place.rsplit_once(':') {
         Some((file, list)) if !Path::new(place).is_file() => (PathBuf::from(file), Some(PathBuf::from(list))),
         _ => (PathBuf::from(place), None),
@@ -59,9 +59,8 @@ pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
         let names = std::fs::read_to_string(&list).map_err(|e| Error::read(&list, &e))?;
         let names: Vec<String> =
             names.lines().map(|l| l.trim().to_owned()).filter(|l| !l.is_empty()).collect();
-        all = all.only(&names).map_err(|missing| Error::Spectra {
-            path: file,
-            what: format!("has no spectrum `{missing}`, which {} asks for", list.display()),
+        all = all.only(&names).map_err(|name| {
+            Error::spectra(&file, SpectraError::Missing { name, list: list.display().to_string() })
         })?;
     }
     Ok(ReflectanceSet { name: name.to_owned(), reflectances: all.reflectances() })
@@ -75,17 +74,17 @@ pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
 /// A camera that cannot be read, a light without a spectrum.
 pub fn table(
     camera: &Path,
-    light: &NamedLight,
+    light: &LightSource,
     set: &ReflectanceSet,
     exposure: f64,
 ) -> Result<Vec<Row>, Error> {
-    let fault = |what: &str| Error::Fit { light: light.light.name.clone(), what: what.to_owned() };
-    let spectrum = light.spectrum.as_ref().ok_or_else(|| fault("its spectrum is not known"))?;
+    let fault = |source: CalibrateError| Error::fit(light, source);
+    let spectrum = light.spectrum.as_ref().ok_or_else(|| fault(CalibrateError::NoSpectrum))?;
     let channels = in_31_channels(spectrum);
     let (sensitivities, _) = spectra::read_sensitivities(camera)?;
     let seen = sensitivities.under(&channels);
-    let samples = seen.ok_or_else(|| fault("a channel of the camera sees nothing of it"))?;
-    let samples = samples.render(&set.reflectances, &channels).map_err(|e| fault(&e.to_string()))?;
+    let samples = seen.ok_or_else(|| fault(CalibrateError::BlindChannel))?;
+    let samples = samples.render(&set.reflectances, &channels).map_err(|e| fault(e.into()))?;
     let row = |kind: Kind| Row {
         kind,
         errors: errors(&samples, kind, exposure),

@@ -6,6 +6,7 @@ use darkroot_colour::Xy;
 use darkroot_develop::CameraMatrix;
 use darkroot_profile::Profile;
 
+use crate::fault::NeutralError;
 use crate::{Error, Settings, files, store};
 
 /// Unbalanced camera RGB of these whites, by the matrices that a raw file of the profile's camera carries or that
@@ -18,21 +19,15 @@ pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec
     let bytes = files::read(raw_file)?;
     let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: raw_file.to_owned(), source })?;
-    let unusable = |what: String| Error::Neutral { path: raw_file.to_owned(), what };
+    let unusable = |source: NeutralError| Error::Neutral { path: raw_file.to_owned(), source };
     if !store::is_for(profile, &capture.camera) {
         let (camera, of) = (capture.camera.name(), profile.camera().name());
-        return Err(unusable(format!(
-            "it was taken with {camera}, not with {of}; name a raw file of that camera"
-        )));
+        return Err(unusable(NeutralError::OtherCamera { camera, of }));
     }
     let matrix = CameraMatrix::of(&capture);
     let neutral = |white: &Xy| matrix.as_ref().and_then(|m| m.neutral_of(*white));
     let all: Option<Vec<[f64; 3]>> = whites.iter().map(neutral).collect();
-    all.ok_or_else(|| {
-        unusable(
-            "no color matrix of its camera is known; give the neutrals yourself with `--neutral`".to_owned(),
-        )
-    })
+    all.ok_or_else(|| unusable(NeutralError::NoMatrix))
 }
 
 /// Writes an exported file, whole or not at all. Missing folders are made.

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use darkroot_chart::{Found, Layout, Options, Picture, Quad, Rejected, Search, measure, windows};
+pub use darkroot_chart::Found;
+use darkroot_chart::{ChartLayout, Options, Quad, Rejected, Search, SearchImage, measure, windows};
 use darkroot_colour::RgbSpace;
 use darkroot_photo::metadata::Metadata;
 use darkroot_photo::{PictureSpace, Samples, Size};
 
+use crate::fault::ChartError;
 use crate::shot::View;
 use crate::{Error, Settings, files};
 
@@ -39,16 +41,16 @@ pub struct FoundCharts {
 ///
 /// # Errors
 /// A file that cannot be read.
-pub fn find_charts(path: &Path, layouts: &[Layout], settings: &Settings) -> Result<FoundCharts, Error> {
+pub fn find_charts(path: &Path, layouts: &[ChartLayout], settings: &Settings) -> Result<FoundCharts, Error> {
     let view = View::open_any(path, settings)?;
     Ok(FoundCharts { size: view.size, search: search(&view, layouts) })
 }
 
 /// Charts in pixels of the developed picture.
-fn search(view: &View, layouts: &[Layout]) -> Search {
+fn search(view: &View, layouts: &[ChartLayout]) -> Search {
     let bin = view.bin();
     let (size, planes) = view.binned(bin);
-    let picture = Picture { width: size.width, height: size.height, planes };
+    let picture = SearchImage { width: size.width, height: size.height, planes };
     let mut search = darkroot_chart::detect::search(&picture, layouts, &Options::default());
     // The middle of a bin of 2 x 2 pixels lies half a pixel beyond its first.
     let scaled = |q: &Quad| q.map(|p| p.map(|v| v * bin as f64 + (bin as f64 - 1.0) / 2.0));
@@ -63,24 +65,18 @@ fn search(view: &View, layouts: &[Layout]) -> Search {
 }
 
 /// The surest chart of a layout. The reason in words where there is none.
-pub(crate) fn best(view: &View, layout: &Layout) -> Result<Place, String> {
+pub(crate) fn best(view: &View, layout: &ChartLayout) -> Result<Place, ChartError> {
     let search = search(view, std::slice::from_ref(layout));
     if let Some(found) = search.found.first() {
         return Ok(place(found));
     }
-    let reason = search.rejected.map_or_else(String::new, |Rejected { reason, .. }| format!(" ({reason})"));
-    Err(format!(
-        "no {} was found{reason}; give its corners, `--corners x,y,x,y,x,y,x,y`, or take it larger, sharper and whole",
-        layout.title
-    ))
+    let reason = search.rejected.map(|Rejected { reason, .. }| reason);
+    Err(ChartError::NotFound { chart: layout.title.clone(), reason })
 }
 
 /// A chart at corners given by hand.
-pub(crate) fn by_hand(layout: &Layout, corners: &Quad) -> Result<Place, String> {
-    let of_patches = |inset: f64| {
-        windows::windows(layout, corners, inset)
-            .ok_or_else(|| "the corners are no quadrilateral; give them clockwise from patch 1".to_owned())
-    };
+pub(crate) fn by_hand(layout: &ChartLayout, corners: &Quad) -> Result<Place, ChartError> {
+    let of_patches = |inset: f64| windows::windows(layout, corners, inset).ok_or(ChartError::Corners);
     Ok(Place { corners: *corners, patches: of_patches(0.0)?, windows: of_patches(INSET)?, confidence: 1.0 })
 }
 

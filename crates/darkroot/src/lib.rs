@@ -41,7 +41,7 @@ pub mod spectra;
 pub use spectra::SpectraFile;
 
 pub mod light;
-pub use light::NamedLight;
+pub use light::LightSource;
 
 pub mod from_spectra;
 pub use from_spectra::{FromSpectra, from_spectra};
@@ -50,14 +50,13 @@ pub mod evaluate;
 
 pub mod export;
 
-pub mod calibrate;
-pub use calibrate::{Calibrated, MeasuredPatch, calibrate};
-
 pub mod store;
 pub use store::{ChosenProfile, ProfileStore};
 
 pub mod error;
 pub use error::Error;
+
+pub mod fault;
 
 pub mod charts;
 
@@ -68,6 +67,8 @@ pub mod shot;
 pub use shot::{Shot, ShotOptions};
 
 pub mod verify;
+
+pub mod page;
 
 pub mod report;
 

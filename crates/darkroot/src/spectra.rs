@@ -12,6 +12,7 @@ use sha2::{Digest, Sha256};
 use darkroot_profile::Sensitivities;
 
 use crate::Error;
+use crate::fault::SpectraError;
 
 /// The spectra of one file.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,8 +54,8 @@ impl SpectraFile {
 pub fn read(path: &Path) -> Result<SpectraFile, Error> {
     let bytes = std::fs::read(path).map_err(|e| Error::read(path, &e))?;
     let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
-    let wrong = |what: String| Error::Spectra { path: path.to_owned(), what };
-    let text = String::from_utf8(bytes).map_err(|_| wrong("is not text".to_owned()))?;
+    let wrong = |fault: SpectraError| Error::spectra(path, fault);
+    let text = String::from_utf8(bytes).map_err(|_| wrong(SpectraError::NotText))?;
     let spectra = parse(&text).map_err(wrong)?;
     Ok(SpectraFile { spectra, sha256 })
 }
@@ -73,11 +74,7 @@ pub fn read_sensitivities(path: &Path) -> Result<(Sensitivities, SpectraFile), E
         (Some(r), Some(g), Some(b), [_, _, _]) => [r, g, b],
         (_, _, _, [(_, r), (_, g), (_, b)]) => [r, g, b],
         (_, _, _, all) => {
-            let what = format!(
-                "has {} spectra; sensitivities are three: red, green and blue, a row each",
-                all.len()
-            );
-            return Err(Error::Spectra { path: path.to_owned(), what });
+            return Err(Error::spectra(path, SpectraError::NotThree { count: all.len() }));
         }
     };
     let sensitivities = Sensitivities(channels.map(|s| clamped(&smooth(s), f64::INFINITY)));
@@ -92,36 +89,38 @@ fn clamped(spectrum: &Spectrum, highest: f64) -> Spectrum {
     Spectrum(spectrum.0.map(|v| v.clamp(0.0, highest)))
 }
 
-fn parse(text: &str) -> Result<Vec<(String, Measured)>, String> {
+fn parse(text: &str) -> Result<Vec<(String, Measured)>, SpectraError> {
     let rows = rows(text)?;
     let number = |cell: &String| cell.parse::<f64>().ok();
-    let first = rows.first().ok_or("is empty")?;
+    let first = rows.first().ok_or(SpectraError::Empty)?;
     let by_row = first.len() > 2 && first[1..].iter().all(|cell| number(cell).is_some());
     let rows = if by_row { rows } else { transposed(&rows) };
-    let (head, body) = rows.split_first().ok_or("is empty")?;
+    let (head, body) = rows.split_first().ok_or(SpectraError::Empty)?;
     let wavelengths = head[1..]
         .iter()
-        .map(|cell| number(cell).ok_or_else(|| format!("has `{cell}` where a wavelength in nm should stand")))
+        .map(|cell| number(cell).ok_or_else(|| SpectraError::Wavelength { cell: cell.clone() }))
         .collect::<Result<Vec<_>, _>>()?;
     let spectrum = |row: &Vec<String>| {
         let name = row[0].clone();
         let values = row[1..]
             .iter()
             .map(|cell| {
-                number(cell).ok_or_else(|| format!("`{name}` has `{cell}` where a number should stand"))
+                number(cell).ok_or_else(|| SpectraError::Number { name: name.clone(), cell: cell.clone() })
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let measured = Measured::new(&wavelengths, &values).map_err(|e| format!("`{name}`: {e}"))?;
-        Ok::<_, String>((name, measured))
+        match Measured::new(&wavelengths, &values) {
+            Ok(measured) => Ok((name, measured)),
+            Err(source) => Err(SpectraError::Spectrum { name, source }),
+        }
     };
     let spectra = body.iter().map(spectrum).collect::<Result<Vec<_>, _>>()?;
     if spectra.is_empty() {
-        return Err("has wavelengths but no spectrum; give a row for each".to_owned());
+        return Err(SpectraError::NoSpectrum);
     }
     Ok(spectra)
 }
 
-fn rows(text: &str) -> Result<Vec<Vec<String>>, String> {
+fn rows(text: &str) -> Result<Vec<Vec<String>>, SpectraError> {
     let first = text.lines().find(|l| !l.trim().is_empty() && !l.starts_with('#')).unwrap_or_default();
     let delimiter = [b'\t', b';', b','].into_iter().find(|d| first.contains(char::from(*d))).unwrap_or(b',');
     let mut reader = csv::ReaderBuilder::new()
@@ -131,8 +130,7 @@ fn rows(text: &str) -> Result<Vec<Vec<String>>, String> {
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
     let record = |r: Result<csv::StringRecord, csv::Error>| {
-        let r = r.map_err(|e| format!("is no table of spectra: {e}"))?;
-        Ok::<Vec<String>, String>(r.iter().map(str::to_owned).collect())
+        Ok::<Vec<String>, SpectraError>(r?.iter().map(str::to_owned).collect())
     };
     reader.records().map(record).collect()
 }
@@ -177,7 +175,7 @@ mod tests {
             (table(10).lines().next().unwrap_or_default().to_owned(), "no spectrum"),
             ("name,400,401\na,1,2".to_owned(), "700 nm"),
         ] {
-            let message = parse(&text).unwrap_err();
+            let message = parse(&text).unwrap_err().to_string();
             assert!(message.contains(word), "{message}");
         }
     }

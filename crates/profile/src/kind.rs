@@ -48,6 +48,16 @@ impl Kind {
         if order == Order::One { Self::Linear } else { Self::Root(order) }
     }
 
+    /// Whether its fit needs the reflectances of the colours.
+    pub fn needs_spectra(self) -> bool {
+        matches!(self, Self::Spectral | Self::Chromatic)
+    }
+
+    /// Whether its models keep colours when the exposure changes, so that they are good for pictures.
+    pub fn keeps_exposure(self) -> bool {
+        !matches!(self, Self::Polynomial(_))
+    }
+
     /// Whether a model has the parts of this kind and no others.
     pub fn fits(self, model: &Model) -> bool {
         let parts = [

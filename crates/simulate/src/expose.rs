@@ -93,32 +93,14 @@ pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
     let active_area = Rect { x: left, y: top, width: lit.width, height: lit.height };
     let optics = Optics::new(exposure, &picture, upright);
 
-    let planes = camera.layout.planes();
-    let mut samples = Vec::with_capacity(size.area() * planes);
-    for y in 0..size.height {
-        for x in 0..size.width {
-            let seen = if x < left || y < top {
-                [0.0; 3]
-            } else {
-                let (u, v) = exposure.orientation.place(x - left, y - top, lit);
-                optics.through(picture[v * upright.width + u], u, v)
-            };
-            match &camera.layout {
-                Layout::Rgb => samples.extend((0..3).map(|c| {
-                    let index = (3 * (y * size.width + x) + c) as u64;
-                    count(camera, camera.black.at(x, y, c), seen[c], exposure.noise, index)
-                })),
-                layout => {
-                    let plane = match layout {
-                        Layout::Cfa(cfa) => cfa.at(x, y).plane().unwrap_or(1),
-                        _ => 1,
-                    };
-                    let index = (y * size.width + x) as u64;
-                    samples.push(count(camera, camera.black.at(x, y, 0), seen[plane], exposure.noise, index));
-                }
-            }
+    let light_at = |x: usize, y: usize| {
+        if x < left || y < top {
+            return [0.0; 3];
         }
-    }
+        let (u, v) = exposure.orientation.place(x - left, y - top, lit);
+        optics.through(picture[v * upright.width + u], u, v)
+    };
+    let samples = counted(camera, size, exposure.noise, light_at);
 
     let margin = if 4 * camera.crop < lit.width.min(lit.height) { camera.crop } else { 0 };
     let default_crop = Rect {
@@ -155,6 +137,37 @@ pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
         },
         notes: Vec::new(),
     }
+}
+
+/// The counts of every sample, by the light that falls on it.
+fn counted(
+    camera: &Camera,
+    size: Size,
+    noise: Option<u64>,
+    light_at: impl Fn(usize, usize) -> [f32; 3],
+) -> Vec<u16> {
+    let planes = camera.layout.planes();
+    let mut samples = Vec::with_capacity(size.area() * planes);
+    for y in 0..size.height {
+        for x in 0..size.width {
+            let seen = light_at(x, y);
+            match &camera.layout {
+                Layout::Rgb => samples.extend((0..3).map(|c| {
+                    let index = (3 * (y * size.width + x) + c) as u64;
+                    count(camera, camera.black.at(x, y, c), seen[c], noise, index)
+                })),
+                layout => {
+                    let plane = match layout {
+                        Layout::Cfa(cfa) => cfa.at(x, y).plane().unwrap_or(1),
+                        _ => 1,
+                    };
+                    let index = (y * size.width + x) as u64;
+                    samples.push(count(camera, camera.black.at(x, y, 0), seen[plane], noise, index));
+                }
+            }
+        }
+    }
+    samples
 }
 
 /// What the lens does to the light.

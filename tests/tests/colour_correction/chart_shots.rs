@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use darkroot::light::NamedLight;
+use darkroot::light::LightSource;
 use darkroot::shot::Verdict;
 use darkroot::{ChartRequest, MadeProfile, Settings, ShotOptions, make_profile};
 use darkroot_chart::{Reference, ReferenceColour};
@@ -147,7 +147,7 @@ fn as_exposed(body: &Camera, light: &Spectrum) -> Spectrum {
 }
 
 /// A chart in mixed light: what the camera sees of it, and the light in its middle.
-fn mixed_shot(body: &Camera, patches: &[Spectrum], mixed: Mixed) -> (Capture, NamedLight) {
+fn mixed_shot(body: &Camera, patches: &[Spectrum], mixed: Mixed) -> (Capture, LightSource) {
     let [lamp, window] = ["A", "D65"].map(|name| darkroot::light::find(name).unwrap().spectrum.unwrap());
     let scene = Scene::chart(SIZE, CORNERS, patches, 6, 0.15);
     let of = |light: &Spectrum, seed: u64| {
@@ -176,10 +176,10 @@ fn mixed_shot(body: &Camera, patches: &[Spectrum], mixed: Mixed) -> (Capture, Na
     let spectrum = Spectrum(std::array::from_fn(|i| lamp.0[i] * (1.0 - middle) + window.0[i] * middle));
     let white = spectrum.white();
     let light = darkroot_profile::Light { name: "lamp and window".to_owned(), xy: white.xy().unwrap() };
-    (shot, NamedLight { light, spectrum: Some(spectrum) })
+    (shot, LightSource { light, spectrum: Some(spectrum) })
 }
 
-fn made(shot: &(Capture, NamedLight), patches: &[Spectrum], options: ShotOptions) -> MadeProfile {
+fn made(shot: &(Capture, LightSource), patches: &[Spectrum], options: ShotOptions) -> MadeProfile {
     let thread = std::thread::current().id();
     let folder = std::env::temp_dir().join(format!("darkroot-mixed-{}-{thread:?}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
@@ -192,7 +192,7 @@ fn made(shot: &(Capture, NamedLight), patches: &[Spectrum], options: ShotOptions
 
 fn profiled(
     file: PathBuf,
-    light: NamedLight,
+    light: LightSource,
     chart: &str,
     patches: &[Spectrum],
     options: ShotOptions,
@@ -237,9 +237,9 @@ fn outcome(camera: &str, mixed: Mixed, options: ShotOptions) -> Outcome {
         let made = made(&shot, &patches, options);
         let calibration = made.profile.calibrations()[0].clone();
         let gates = &made.lights[0].shots[0].gates;
-        let words = gates.iter().find(|g| g.name == "colour of light").map(|g| g.words.clone());
+        let words = gates.iter().find(|g| g.name() == "colour of light").map(|g| g.words());
         println!("{camera}: {}", words.unwrap_or_default());
-        let warned = gates.iter().any(|g| g.name == "colour of light" && g.verdict == Verdict::Warning);
+        let warned = gates.iter().any(|g| g.name() == "colour of light" && g.verdict == Verdict::Warning);
         let promised = calibration.figures.leave_one_out.unwrap().de2000.mean;
         (judged(&calibration.model, &sensitivities, &light), promised, warned)
     };
@@ -322,12 +322,12 @@ fn the_passport_in_mixed_light_tells_its_faults() {
         compared.result.as_ref().unwrap().leave_one_out.unwrap().de2000.mean
     };
     let (daylight, lamp) = (made("D50", ShotOptions::default()), made("A", ShotOptions::default()));
-    assert_eq!(daylight.gates[0].verdict, Verdict::Warning, "{}", daylight.gates[0].words);
-    assert_eq!(lamp.gates[0].verdict, Verdict::Good, "{}", lamp.gates[0].words);
-    let glare = lamp.shots[0].gates.iter().find(|g| g.name == "glare").unwrap();
-    assert!(glare.verdict == Verdict::Warning && glare.advice.contains("black level"), "{glare:?}");
-    let change = lamp.shots[0].gates.iter().find(|g| g.name == "colour of light").unwrap();
-    assert_eq!(change.verdict, Verdict::Good, "{}", change.words);
+    assert_eq!(daylight.gates[0].verdict, Verdict::Warning, "{}", daylight.gates[0].words());
+    assert_eq!(lamp.gates[0].verdict, Verdict::Good, "{}", lamp.gates[0].words());
+    let glare = lamp.shots[0].gates.iter().find(|g| g.name() == "glare").unwrap();
+    assert!(glare.verdict == Verdict::Warning && glare.advice().contains("black level"), "{glare:?}");
+    let change = lamp.shots[0].gates.iter().find(|g| g.name() == "colour of light").unwrap();
+    assert_eq!(change.verdict, Verdict::Good, "{}", change.words());
     assert!(
         lamp.calibrated.notes.iter().any(|n| n.contains("--white-balance 1.")),
         "{:?}",

@@ -1,5 +1,6 @@
 //! Regions that lie in rows and columns.
 
+use darkroot_colour::statistics::median;
 use std::collections::BTreeMap;
 
 use super::regions::Region;
@@ -184,8 +185,7 @@ fn fill(regions: &[Region], members: &BTreeMap<(i32, i32), usize>, map: &Homogra
             (regions[*r].area / (a * d - b * c).abs()).sqrt()
         })
         .collect();
-    fills.sort_by(f64::total_cmp);
-    fills.get(fills.len() / 2).map_or(0.8, |f| f.clamp(0.4, 1.0))
+    median(&mut fills).map_or(0.8, |f| f.clamp(0.4, 1.0))
 }
 
 fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

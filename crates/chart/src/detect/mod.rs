@@ -18,9 +18,9 @@ mod verdict;
 use rayon::prelude::*;
 
 pub use found::{Found, Rejected, Search};
-pub use pixels::Picture;
+pub use pixels::SearchImage;
 
-use crate::Layout;
+use crate::ChartLayout;
 use pixels::Reduced;
 use placement::{Candidate, Family};
 
@@ -46,12 +46,12 @@ const SMALLEST_SIDE: usize = 40;
 const MOST_CANDIDATES: usize = 24;
 
 /// The charts of a picture, the most certain first.
-pub fn find(picture: &Picture, layouts: &[Layout], options: &Options) -> Vec<Found> {
+pub fn find(picture: &SearchImage, layouts: &[ChartLayout], options: &Options) -> Vec<Found> {
     search(picture, layouts, options).found
 }
 
 /// The charts of a picture and, where there is none, what came nearest and why it was refused.
-pub fn search(picture: &Picture, layouts: &[Layout], options: &Options) -> Search {
+pub fn search(picture: &SearchImage, layouts: &[ChartLayout], options: &Options) -> Search {
     let Some(picture) = picture.checked().filter(|p| p.width.max(p.height) >= SMALLEST_SIDE) else {
         return Search { found: Vec::new(), rejected: Some(Rejected::nothing()) };
     };
@@ -87,7 +87,7 @@ pub fn search(picture: &Picture, layouts: &[Layout], options: &Options) -> Searc
 }
 
 /// The picture at `search_side` and at halves of it.
-fn scales(picture: &Picture, options: &Options) -> Vec<Reduced> {
+fn scales(picture: &SearchImage, options: &Options) -> Vec<Reduced> {
     let side = picture.width.max(picture.height);
     let first = side.div_ceil(options.search_side.max(SMALLEST_SIDE));
     let factors: Vec<usize> =

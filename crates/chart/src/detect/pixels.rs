@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 /// A picture of linear light in any scale and any camera's red, green and blue. Rows follow one another without gaps.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Picture {
+pub struct SearchImage {
     /// Pixels of a row.
     pub width: usize,
     /// Rows.
@@ -13,7 +13,7 @@ pub struct Picture {
     pub planes: [Vec<f32>; 3],
 }
 
-impl Picture {
+impl SearchImage {
     /// The picture without values that are no light; `None` when the planes do not have its size.
     pub(super) fn checked(&self) -> Option<Self> {
         let count = self.width.checked_mul(self.height)?;
@@ -46,7 +46,7 @@ const BRIGHTEST: f64 = 0.005;
 
 impl Reduced {
     /// `None` when nothing is left or a channel is black.
-    pub(super) fn of(picture: &Picture, factor: usize) -> Option<Self> {
+    pub(super) fn of(picture: &SearchImage, factor: usize) -> Option<Self> {
         let (width, height) = (picture.width / factor, picture.height / factor);
         if width == 0 || height == 0 {
             return None;

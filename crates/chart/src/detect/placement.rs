@@ -5,17 +5,17 @@ use std::collections::HashMap;
 use super::colours::{Expected, Fit};
 use super::lattice::Lattice;
 use super::pixels::Reduced;
-use crate::{Homography, Layout, Quad};
+use crate::{ChartLayout, Homography, Quad};
 
 /// Layouts that differ in their gaps only.
 #[derive(Debug, Clone)]
 pub(super) struct Family {
-    pub(super) layouts: Vec<Layout>,
+    pub(super) layouts: Vec<ChartLayout>,
     pub(super) expected: Expected,
 }
 
 impl Family {
-    pub(super) fn of(layouts: &[Layout]) -> Vec<Self> {
+    pub(super) fn of(layouts: &[ChartLayout]) -> Vec<Self> {
         let mut families: Vec<Self> = Vec::new();
         for layout in layouts {
             let same = |f: &&mut Self| {
@@ -37,7 +37,7 @@ impl Family {
     }
 
     /// The layout that the others of the family resemble.
-    pub(super) fn layout(&self) -> &Layout {
+    pub(super) fn layout(&self) -> &ChartLayout {
         &self.layouts[0]
     }
 

@@ -1,8 +1,9 @@
 //! The places of all patches from the edges of all patches.
 
+use darkroot_colour::statistics::median;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::pixels::Picture;
+use super::pixels::SearchImage;
 use super::placement::{Candidate, Family};
 use crate::Homography;
 
@@ -33,7 +34,7 @@ const HUBER: f64 = 0.02;
 const IN_PLACE: f64 = 0.1;
 
 /// `None` when the edges do not determine the chart.
-pub(super) fn refine(picture: &Picture, candidate: &Candidate, family: &Family) -> Option<Refined> {
+pub(super) fn refine(picture: &SearchImage, candidate: &Candidate, family: &Family) -> Option<Refined> {
     let columns = family.columns();
     let rows = family.layout().rows;
     let mut now = Refined { map: candidate.map, half: [candidate.fill / 2.0; 2], error: 1.0, seen: 0.0 };
@@ -53,8 +54,7 @@ pub(super) fn refine(picture: &Picture, candidate: &Candidate, family: &Family) 
     let mut errors: Vec<f64> =
         edges.iter().map(|e| (e.residual(&back, now.half) / (2.0 * now.half[e.axis])).powi(2)).collect();
     let seen = errors.iter().filter(|e| **e < IN_PLACE * IN_PLACE / 4.0).count() as f64;
-    errors.sort_by(f64::total_cmp);
-    now.error = errors.get(errors.len() / 2)?.sqrt();
+    now.error = median(&mut errors)?.sqrt();
     now.seen = seen / total;
     Some(now)
 }
@@ -146,6 +146,17 @@ fn edge(
         .windows(5)
         .map(|w| (0..3).map(|c| f64::from(w[4][c] - w[0][c]).powi(2)).sum::<f64>().sqrt())
         .collect();
+    let (t, height) = peak(&slope, spacing, reach)?;
+    let mut p = centre;
+    p[other] += now.half[other] * along;
+    p[axis] += side * now.half[axis] + t;
+    let at = now.map.apply(p);
+    let weight = (height / 0.3).min(1.0);
+    at.iter().all(|v| v.is_finite()).then_some(Edge { at, axis, place: centre[axis], side, weight })
+}
+
+/// Place and height of the peak of a slope that lies within `reach` of the middle, those near the middle favoured.
+fn peak(slope: &[f64], spacing: f64, reach: f64) -> Option<(f64, f64)> {
     let half_count = (slope.len() - 1) as f64 / 2.0;
     let place = |i: usize| (i as f64 - half_count) * spacing;
     let favoured = |i: usize| slope[i] * (-0.5 * (place(i) / (0.6 * reach)).powi(2)).exp();
@@ -155,20 +166,13 @@ fn edge(
     if slope[best] < WEAKEST || best == 0 || best + 1 == slope.len() {
         return None;
     }
-    // The middle of the peak.
     let (mut sum, mut moment) = (0.0, 0.0);
     for (i, slope) in slope.iter().enumerate().skip(best.saturating_sub(2)).take(5) {
         let weight = slope * slope;
         sum += weight;
         moment += weight * place(i);
     }
-    let t = moment / sum;
-    let mut p = centre;
-    p[other] += now.half[other] * along;
-    p[axis] += side * now.half[axis] + t;
-    let at = now.map.apply(p);
-    let weight = (slope[best] / 0.3).min(1.0);
-    at.iter().all(|v| v.is_finite()).then_some(Edge { at, axis, place: centre[axis], side, weight })
+    Some((moment / sum, slope[best]))
 }
 
 /// Fits the map back from pixels to steps and half a patch's size to the edges.
@@ -220,14 +224,14 @@ fn fitted(now: &Refined, edges: &[Edge]) -> Option<Refined> {
 struct View {
     origin: [f64; 2],
     factor: usize,
-    picture: Picture,
+    picture: SearchImage,
 }
 
 /// Largest side of a view in pixels.
 const LARGEST_VIEW: usize = 3000;
 
 impl View {
-    fn of(picture: &Picture, candidate: &Candidate, factor: usize) -> Option<Self> {
+    fn of(picture: &SearchImage, candidate: &Candidate, factor: usize) -> Option<Self> {
         let corners = candidate.corners();
         let range = |k: usize, limit: usize| {
             let [low, high] =
@@ -261,7 +265,7 @@ impl View {
             }
             small
         });
-        Some(Self { origin: [x0 as f64, y0 as f64], factor, picture: Picture { width, height, planes } })
+        Some(Self { origin: [x0 as f64, y0 as f64], factor, picture: SearchImage { width, height, planes } })
     }
 
     /// Logarithm of the light at a point of the whole picture.

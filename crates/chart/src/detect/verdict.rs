@@ -2,11 +2,11 @@
 
 use super::colours::Fit;
 use super::found::{Found, Rejected};
-use super::pixels::Picture;
+use super::pixels::SearchImage;
 use super::placement::{Candidate, Family};
 use super::refine::{Refined, refine};
 use crate::geometry::is_convex;
-use crate::{Homography, Layout, Quad};
+use crate::{ChartLayout, Homography, Quad};
 
 /// Most of the variance that may stay unexplained, for lightness and for ratios of channels.
 const UNEXPLAINED: [f64; 2] = [0.25, 0.22];
@@ -21,7 +21,7 @@ const EDGE_ERROR: f64 = 0.045;
 
 /// Accepts or refuses a candidate.
 pub(super) fn judge(
-    picture: &Picture,
+    picture: &SearchImage,
     candidate: &Candidate,
     families: &[Family],
 ) -> Result<Found, Box<Rejected>> {
@@ -91,7 +91,7 @@ fn corners(refined: &Refined, family: &Family) -> Quad {
 /// Points along a side of a patch's middle that are averaged.
 const POINTS: usize = 9;
 
-fn colours(picture: &Picture, refined: &Refined, family: &Family) -> Option<Fit> {
+fn colours(picture: &SearchImage, refined: &Refined, family: &Family) -> Option<Fit> {
     let columns = family.columns();
     let seen: Option<Vec<[f64; 3]>> = (0..columns.len() * family.layout().rows)
         .map(|i| {
@@ -104,7 +104,7 @@ fn colours(picture: &Picture, refined: &Refined, family: &Family) -> Option<Fit>
 }
 
 /// Mean over the middle 60 % of a patch without the brightest and darkest quarter.
-fn middle(picture: &Picture, map: &Homography, centre: [f64; 2], half: [f64; 2]) -> Option<[f64; 3]> {
+fn middle(picture: &SearchImage, map: &Homography, centre: [f64; 2], half: [f64; 2]) -> Option<[f64; 3]> {
     let mut values: [Vec<f32>; 3] = Default::default();
     for n in 0..POINTS * POINTS {
         let offset = [n % POINTS, n / POINTS].map(|k| 1.2 * (k as f64 / (POINTS - 1) as f64 - 0.5));
@@ -126,7 +126,7 @@ fn middle(picture: &Picture, map: &Homography, centre: [f64; 2], half: [f64; 2])
 fn found(refined: &Refined, family: &Family, fit: Fit, corners: Quad) -> Found {
     let gap = refined.half.map(|h| (0.5 / h - 1.0).max(0.0));
     let mean = (gap[0] + gap[1]) / 2.0;
-    let misfit = |l: &&Layout| (l.gap - mean).abs();
+    let misfit = |l: &&ChartLayout| (l.gap - mean).abs();
     let nearest = family.layouts.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)));
     let layout = nearest.unwrap_or(family.layout());
     let middle = |a: usize, b: usize| [0, 1].map(|k| (corners[a][k] + corners[b][k]) / 2.0);

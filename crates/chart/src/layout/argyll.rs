@@ -1,9 +1,10 @@
 //! Argyll's chart recognition files (.cht): where the boxes are and about which colours they have
 //! (Argyll CMS, "File Formats", Chart Recognition).
 
+use darkroot_colour::statistics::median;
 use darkroot_colour::{Lab, Xyz, white};
 
-use super::{Hinge, Layout, LayoutError, PatchPlace};
+use super::{ChartLayout, Hinge, LayoutError, PatchPlace};
 
 /// More boxes than any chart has: a bound for hostile files.
 const MOST_BOXES: usize = 4000;
@@ -17,7 +18,7 @@ struct Patch {
 }
 
 /// The layout of a file; ranges are not checked.
-pub(super) fn layout(name: &str, text: &str) -> Result<Layout, LayoutError> {
+pub(super) fn layout(name: &str, text: &str) -> Result<ChartLayout, LayoutError> {
     let boxes = boxes(text)?;
     let first = boxes.first().ok_or(LayoutError::NotAGrid("it has no boxes"))?;
     let size = first.size;
@@ -45,7 +46,7 @@ pub(super) fn layout(name: &str, text: &str) -> Result<Layout, LayoutError> {
         }
     }
     let (columns, rows) = (columns.len(), rows.len());
-    Ok(Layout { name: name.to_owned(), title: name.to_owned(), columns, rows, gap, hinge, patches })
+    Ok(ChartLayout { name: name.to_owned(), title: name.to_owned(), columns, rows, gap, hinge, patches })
 }
 
 /// "A1" and "A01" are the same box.
@@ -70,8 +71,7 @@ fn steps(values: impl Iterator<Item = f64>, size: f64) -> Vec<f64> {
 fn gaps(centres: &[f64], size: f64) -> Result<(f64, Option<Hinge>), LayoutError> {
     let mut steps: Vec<f64> = centres.windows(2).map(|w| (w[1] - w[0]) / size).collect();
     let unsorted = steps.clone();
-    steps.sort_by(f64::total_cmp);
-    let usual = *steps.get(steps.len() / 2).ok_or(LayoutError::NotAGrid("it has a single column or row"))?;
+    let usual = median(&mut steps).ok_or(LayoutError::NotAGrid("it has a single column or row"))?;
     let mut other = unsorted.iter().enumerate().filter(|(_, s)| (**s - usual).abs() > TOLERANCE);
     let hinge = other.next().map(|(i, s)| Hinge { after: i + 1, width: s - usual });
     if other.next().is_some() || hinge.is_some_and(|h| h.width < 0.0) {
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_grid_of_boxes_becomes_a_layout() {
-        let layout = Layout::from_cht("small", SMALL).unwrap();
+        let layout = ChartLayout::from_cht("small", SMALL).unwrap();
         assert_eq!((layout.columns, layout.rows), (3, 2));
         assert!((layout.gap - 0.2).abs() < 1e-9);
         let names: Vec<&str> = layout.patches.iter().map(|p| p.name.as_str()).collect();
@@ -181,11 +181,12 @@ mod tests {
 
     #[test]
     fn broken_files_are_errors_that_say_what() {
-        let check = |from: &str, to: &str| Layout::from_cht("small", &SMALL.replace(from, to)).unwrap_err();
+        let check =
+            |from: &str, to: &str| ChartLayout::from_cht("small", &SMALL.replace(from, to)).unwrap_err();
         assert_eq!(check("C2 8 6 30\n", ""), LayoutError::NoColour("C2".to_owned()));
         assert!(matches!(check("10 10 1 1", "10 10 1 x"), LayoutError::Cht { line: 4, .. }));
         assert!(matches!(check("A C 1 2", "A C 2 1"), LayoutError::Cht { line: 4, .. }));
         assert!(matches!(check("A C 1 2", "A C 1 999999999"), LayoutError::Cht { line: 4, .. }));
-        assert!(matches!(Layout::from_cht("none", ""), Err(LayoutError::NotAGrid(_))));
+        assert!(matches!(ChartLayout::from_cht("none", ""), Err(LayoutError::NotAGrid(_))));
     }
 }

@@ -4,7 +4,7 @@ use darkroot_colour::{Lab, Xyz};
 use roxmltree::{Document, Node};
 
 use super::ReferenceColour;
-use super::{Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
+use super::{ImpossibleColour, Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
 
 /// Reads every object that has a colour: its reflectance, else its XYZ, else its Lab.
 pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
@@ -48,7 +48,7 @@ fn colour(
             node.text().unwrap_or_default().split_whitespace().map(number).collect::<Result<_, _>>()?;
         let (start, step) = range(root, &node).ok_or_else(|| ReferenceError::Colour {
             patch: name.to_owned(),
-            what: "its spectrum has no start wavelength and increment".to_owned(),
+            fault: ImpossibleColour::NoWavelengths,
         })?;
         let wavelengths: Vec<f64> = (0..values.len()).map(|i| start + step * i as f64).collect();
         let scale = if values.iter().copied().fold(0.0, f64::max) > 2.0 { 0.01 } else { 1.0 };

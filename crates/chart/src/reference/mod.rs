@@ -46,12 +46,12 @@ pub enum ReferenceError {
         cell: String,
     },
     /// A colour that no surface has.
-    #[error("patch {patch}: {what}")]
+    #[error("patch {patch}: {fault}")]
     Colour {
         /// Name of the patch.
         patch: String,
-        /// What is impossible about it, and what it may be instead.
-        what: String,
+        /// What is impossible about it.
+        fault: ImpossibleColour,
     },
     /// A spectrum that cannot be used.
     #[error("patch {patch}: {source}")]
@@ -84,6 +84,30 @@ pub enum ReferenceError {
         /// Mean difference.
         off: f64,
     },
+}
+
+/// Why a colour is that of no surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImpossibleColour {
+    /// An X, Y or Z below zero.
+    #[error("XYZ is negative; are these columns Lab?")]
+    NegativeXyz,
+    /// More light than a perfect white reflects.
+    #[error("XYZ is brighter than a perfect white; give Y from 0 to 1 or from 0 to 100")]
+    BrighterThanWhite,
+    /// L* below 0 or above 100.
+    #[error("L* must lie between 0 and 100")]
+    Lightness,
+    /// Too colourful.
+    #[error("a* and b* are larger than those of any surface")]
+    Chroma,
+    /// A spectrum that does not say where it begins or how far its values are apart.
+    #[error("its spectrum has no start wavelength and increment")]
+    NoWavelengths,
+    /// A reflectance below 0 or above 1.
+    #[error("a reflectance lies outside of 0 to 1 (or of 0 to 100 %)")]
+    Reflectance,
 }
 
 impl ReferenceColour {
@@ -159,24 +183,24 @@ fn key(name: &str) -> String {
 
 /// Checks that values can be the XYZ of a surface.
 fn checked_xyz(patch: &str, xyz: Xyz) -> Result<ReferenceColour, ReferenceError> {
-    let fault = |what: &str| ReferenceError::Colour { patch: patch.to_owned(), what: what.to_owned() };
+    let fault = |fault| ReferenceError::Colour { patch: patch.to_owned(), fault };
     if xyz.x < -1e-3 || xyz.y < -1e-3 || xyz.z < -1e-3 {
-        return Err(fault("XYZ is negative; are these columns Lab?"));
+        return Err(fault(ImpossibleColour::NegativeXyz));
     }
     if xyz.y > 1.3 || xyz.x > 1.5 || xyz.z > 1.7 {
-        return Err(fault("XYZ is brighter than a perfect white; give Y from 0 to 1 or from 0 to 100"));
+        return Err(fault(ImpossibleColour::BrighterThanWhite));
     }
     Ok(ReferenceColour::Xyz(xyz))
 }
 
 /// Checks that values can be the Lab of a surface.
 fn checked_lab(patch: &str, lab: Lab) -> Result<ReferenceColour, ReferenceError> {
-    let fault = |what: &str| ReferenceError::Colour { patch: patch.to_owned(), what: what.to_owned() };
+    let fault = |fault| ReferenceError::Colour { patch: patch.to_owned(), fault };
     if !(-0.5..=105.0).contains(&lab.l) {
-        return Err(fault("L* must lie between 0 and 100"));
+        return Err(fault(ImpossibleColour::Lightness));
     }
     if lab.chroma() > 180.0 {
-        return Err(fault("a* and b* are larger than those of any surface"));
+        return Err(fault(ImpossibleColour::Chroma));
     }
     Ok(ReferenceColour::Lab(lab))
 }
@@ -187,8 +211,8 @@ fn checked_reflectance(
     values: &[f64],
 ) -> Result<ReferenceColour, ReferenceError> {
     if values.iter().any(|v| *v < -0.02 || *v > 1.5) {
-        let what = "a reflectance lies outside of 0 to 1 (or of 0 to 100 %)".to_owned();
-        return Err(ReferenceError::Colour { patch: patch.to_owned(), what });
+        let fault = ImpossibleColour::Reflectance;
+        return Err(ReferenceError::Colour { patch: patch.to_owned(), fault });
     }
     Measured::new(wavelengths, values)
         .map(ReferenceColour::Reflectance)

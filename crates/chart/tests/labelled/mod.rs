@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use darkroot_chart::geometry::{area, contains};
-use darkroot_chart::{Found, Homography, Picture, Quad};
+use darkroot_chart::{Found, Homography, Quad, SearchImage};
 use serde::Deserialize;
 
 /// A photograph and its labels.
@@ -46,12 +46,12 @@ pub(crate) fn read(folder: &Path) -> Result<Vec<Photo>, Box<dyn Error>> {
 }
 
 /// The picture in linear light, as if its curve were sRGB's.
-pub(crate) fn open(path: &Path) -> Result<Picture, Box<dyn Error>> {
+pub(crate) fn open(path: &Path) -> Result<SearchImage, Box<dyn Error>> {
     let rgb = image::open(path)?.to_rgb8();
     let linear: Vec<f32> =
         (0..256).map(|v| darkroot_colour::TransferCurve::Srgb.decode(f64::from(v) / 255.0) as f32).collect();
     let plane = |c: usize| rgb.pixels().map(|p| linear[usize::from(p.0[c])]).collect();
-    Ok(Picture {
+    Ok(SearchImage {
         width: rgb.width() as usize,
         height: rgb.height() as usize,
         planes: [plane(0), plane(1), plane(2)],

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what cannot be set up shall fail")]
 
-use darkroot_chart::{Homography, Layout, Picture};
+use darkroot_chart::{ChartLayout, Homography, SearchImage};
 
 use super::{Random, Shot, hash};
 
@@ -28,7 +28,7 @@ pub(crate) const KINDS: [&str; 14] = [
 const SIZE: [usize; 2] = [480, 360];
 
 /// A picture of a kind of clutter, the same for the same number.
-pub(crate) fn picture(kind: &str, number: u64) -> Picture {
+pub(crate) fn picture(kind: &str, number: u64) -> SearchImage {
     let mut random = Random(hash(77, number as i64, kind.bytes().map(i64::from).sum()));
     let pattern = pattern(kind, &mut random);
     let (share, degrees) = (random.within(0.35, 0.9), random.within(-180.0, 180.0));
@@ -128,7 +128,7 @@ fn pattern(kind: &str, random: &mut Random) -> Pattern {
             None => [0.75; 3],
         }),
         "shuffled classic" => {
-            let layout = Layout::by_name("classic24").unwrap();
+            let layout = ChartLayout::by_name("classic24").unwrap();
             let mut colours = super::colours(&layout);
             for i in (1..colours.len()).rev() {
                 colours.swap(i, random.below(i + 1));
@@ -136,7 +136,7 @@ fn pattern(kind: &str, random: &mut Random) -> Pattern {
             Box::new(super::chart_before(&layout, &colours, move |_, _| ground))
         }
         "mirrored classic" => {
-            let layout = Layout::by_name("passport24").unwrap();
+            let layout = ChartLayout::by_name("passport24").unwrap();
             let mut colours = super::colours(&layout);
             colours.chunks_mut(6).for_each(<[_]>::reverse);
             Box::new(super::chart_before(&layout, &colours, move |_, _| ground))

@@ -4,7 +4,7 @@
 
 pub(crate) mod clutter;
 
-use darkroot_chart::{Homography, Layout, Picture, Quad};
+use darkroot_chart::{ChartLayout, Homography, Quad, SearchImage};
 use darkroot_colour::{RgbSpace, Vector3, white};
 
 /// Random numbers (SplitMix64: Steele, Lea and Flood, OOPSLA 2014), the same everywhere.
@@ -84,7 +84,7 @@ impl Shot {
     }
 
     /// The picture of a pattern: light in Rec. 2020 at a point of the plane.
-    pub(crate) fn picture(&self, random: &mut Random, pattern: &dyn Fn(f64, f64) -> [f64; 3]) -> Picture {
+    pub(crate) fn picture(&self, random: &mut Random, pattern: &dyn Fn(f64, f64) -> [f64; 3]) -> SearchImage {
         let [width, height] = self.size;
         let Some(back) = self.map.inverse() else {
             unreachable!("shots are made with maps that have an inverse")
@@ -121,7 +121,7 @@ impl Shot {
                 *v = (value + noise).max(0.0).powf(self.gamma).min(1.0) as f32;
             }
         }
-        Picture { width, height, planes }
+        SearchImage { width, height, planes }
     }
 }
 
@@ -171,12 +171,12 @@ pub(crate) fn placed(
 }
 
 /// Width and height of a chart in patches.
-pub(crate) fn extent(layout: &Layout) -> [f64; 2] {
+pub(crate) fn extent(layout: &ChartLayout) -> [f64; 2] {
     [layout.column_edges(layout.columns - 1)[1], layout.row_edges(layout.rows - 1)[1]]
 }
 
 /// Light of the patches in Rec. 2020.
-pub(crate) fn colours(layout: &Layout) -> Vec<[f64; 3]> {
+pub(crate) fn colours(layout: &ChartLayout) -> Vec<[f64; 3]> {
     let matrix = RgbSpace::REC2020.from_xyz_under(white::D50);
     let rgb = |lab: darkroot_colour::Lab| {
         let xyz = lab.xyz(white::D50);
@@ -188,7 +188,7 @@ pub(crate) fn colours(layout: &Layout) -> Vec<[f64; 3]> {
 
 /// A chart on a card, in patches from its top left corner, before something.
 pub(crate) fn chart_before<B: Fn(f64, f64) -> [f64; 3]>(
-    layout: &Layout,
+    layout: &ChartLayout,
     colours: &[[f64; 3]],
     behind: B,
 ) -> impl Fn(f64, f64) -> [f64; 3] + use<B> {

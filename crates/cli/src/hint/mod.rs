@@ -5,6 +5,7 @@
 
 mod batch;
 mod charts;
+pub(crate) use charts::advice;
 
 use std::error::Error;
 

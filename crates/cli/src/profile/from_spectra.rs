@@ -62,7 +62,7 @@ pub(super) struct FromSpectra {
 
 impl FromSpectra {
     pub(super) fn run(self, common: Common) -> Result<Outcome> {
-        if matches!(self.model, Kind::Polynomial(_)) && !self.force {
+        if !self.model.keeps_exposure() && !self.force {
             bail!(
                 "colours by {} change with exposure, so it is no good for pictures; take root-2, anchored or \
                  spectral, or add `--force`",

@@ -10,7 +10,7 @@ use darkroot::{ChartRequest, Error, Settings, charts, light, make_profile, repor
 use darkroot_profile::Kind;
 use serde_json::json;
 
-use crate::{Common, Outcome};
+use crate::{Common, Outcome, hint};
 
 /// How a shot of a chart is read.
 #[derive(Debug, Args)]
@@ -162,7 +162,7 @@ impl Make {
         if self.lights.is_empty() {
             bail!("give the light of the shot: `--light D50`, `--light 5200K` or a file of its spectrum");
         }
-        if matches!(self.model, Some(Kind::Polynomial(_))) && !self.force {
+        if self.model.is_some_and(|kind| !kind.keeps_exposure()) && !self.force {
             bail!("colours by a plain polynomial change with exposure; take another model or add `--force`");
         }
         let output = self.output.clone().unwrap_or_else(|| first.with_extension("toml"));
@@ -176,7 +176,7 @@ impl Make {
             Ok(made) => made,
             Err(fault @ Error::SeveralShots { .. }) => bail!(fault),
             Err(fault) => {
-                crate::say(format_args!("error: {fault}"));
+                crate::say(format_args!("error: {}", hint::words(&fault)));
                 return Ok(Outcome::SomeFailed);
             }
         };
@@ -202,17 +202,24 @@ impl Make {
 fn say_light(light: &MadeLight) {
     for shot in &light.shots {
         for gate in shot.gates.iter().filter(|g| g.verdict != Verdict::Good) {
-            crate::say(format_args!("  warning: {}: {}; {}", shot.path.display(), gate.words, gate.advice));
+            let (path, advice) = (shot.path.display(), hint::advice(gate));
+            crate::say(format_args!("  warning: {path}: {}; {advice}", gate.words()));
         }
         for note in &shot.notes {
             crate::say(format_args!("  note: {note}"));
         }
     }
     for gate in light.gates.iter().filter(|g| g.verdict != Verdict::Good) {
-        crate::say(format_args!("  warning: {}; {}", gate.words, gate.advice));
+        crate::say(format_args!("  warning: {}; {}", gate.words(), hint::advice(gate)));
     }
     for note in &light.calibrated.notes {
         crate::say(format_args!("  note: {note}"));
+    }
+    if let Some([red, _, blue]) = light.white_balance {
+        crate::say(format_args!(
+            "  note: the white balance in the file is not that of the chart's light: to see the chart as it is, develop with \
+             `--white-balance {red:.3},1,{blue:.3}`"
+        ));
     }
     let chosen = light.calibrated.calibration.kind;
     crate::say(format_args!("  {}, dE2000 (mean / max):  training   left out", light.light.light.name));
@@ -258,7 +265,7 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
                 "leave_one_out": summary(f.leave_one_out),
                 "exposures": c.exposures,
             }),
-            Err(reason) => json!({ "model": c.kind.to_string(), "error": reason }),
+            Err(reason) => json!({ "model": c.kind.to_string(), "error": reason.to_string() }),
         })
         .collect();
     let shots: Vec<_> = light
@@ -309,7 +316,7 @@ fn gates(gates: &[Gate]) -> Vec<serde_json::Value> {
             Verdict::Warning => "warning",
             Verdict::Refused => "failed",
         };
-        json!({ "name": g.name, "verdict": verdict, "value": g.value, "words": g.words })
+        json!({ "name": g.name(), "verdict": verdict, "value": g.value(), "words": g.words() })
     };
     gates.iter().map(one).collect()
 }

@@ -370,12 +370,11 @@ pub(super) fn calibrate(
         date: String::new(),
     };
     let made = make_profile(&request, settings)?;
-    let fault = |what: &str| Error::Chart { path: input.to_owned(), what: what.to_owned() };
-    let first = made.lights.first().ok_or_else(|| fault("gives no light"))?;
+    let first = made.lights.first().ok_or(Error::NoLight)?;
     let camera = first.shots.first().map(|s| CameraNames::from(&s.camera)).unwrap_or_default();
     let white = first.calibrated.white_rgb;
     if white.iter().any(|v| *v <= 0.0) {
-        return Err(fault("its greys have no light in a channel"));
+        return Err(Error::chart(input, crate::fault::ChartError::DarkGreys));
     }
     store::write(&made.profile, profile, true)?;
     Ok(SessionColour {

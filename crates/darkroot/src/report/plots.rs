@@ -1,163 +1,112 @@
-//! Plots of a calibration as SVG.
+//! Plots of a calibration as SVG; their numbers are those of [`darkroot_calibrate::plot`].
 
-use std::fmt::Write as _;
-
-use darkroot_colour::{Lab, Xyz, white};
+use darkroot_calibrate::JudgedPatch;
+use darkroot_calibrate::plot::{self, Residual, TrustCell};
 use darkroot_profile::{Calibration, lint};
+use maud::{Markup, html};
 
 use super::css;
-use crate::calibrate::Judged;
 
 const SIDE: f64 = 320.0;
+const HALF: f64 = SIDE / 2.0;
 
-fn used(patches: &[Judged]) -> impl Iterator<Item = &Judged> {
-    patches.iter().filter(|p| p.excluded.is_none())
+/// A plot with its caption.
+fn figure(label: &str, caption: &str, drawing: &Markup) -> Markup {
+    html! {
+        figure {
+            svg.plot viewBox=(format!("0 0 {SIDE} {}", SIDE + 20.0)) role="img" aria-label=(label) { (drawing) }
+            figcaption { (caption) }
+        }
+    }
 }
 
-fn lab(xyz: Xyz) -> Lab {
-    xyz.lab(white::D50)
+/// A coordinate to a tenth of a pixel.
+fn at(v: f64) -> String {
+    format!("{v:.1}")
 }
 
-fn open(svg: &mut String, label: &str) {
-    let _ = write!(
-        svg,
-        "<figure><svg class=\"plot\" viewBox=\"0 0 {SIDE} {}\" role=\"img\" aria-label=\"{label}\">",
-        SIDE + 20.0
-    );
-}
-
-fn close(svg: &mut String, caption: &str) {
-    let _ = write!(svg, "</svg><figcaption>{caption}</figcaption></figure>");
+fn dot(x: f64, y: f64, residual: &Residual<'_>, words: &str) -> Markup {
+    let fill = css(residual.patch.reference);
+    html! {
+        circle cx=(at(x)) cy=(at(y)) r="4" fill=(fill) stroke="#666" stroke-width=".5" {
+            title { (residual.patch.name) " " (words) }
+        }
+    }
 }
 
 /// Arrows in a*b* from each reference colour to what the profile makes of it.
-pub(super) fn vectors(patches: &[Judged]) -> String {
+pub(super) fn vectors(patches: &[JudgedPatch]) -> Markup {
     const STRETCH: f64 = 5.0;
+    let residuals = plot::residuals(patches);
     let reach =
-        used(patches).map(|p| lab(p.reference)).map(|c| c.a.abs().max(c.b.abs())).fold(40.0, f64::max) * 1.15;
-    let place = |a: f64, b: f64| (SIDE / 2.0 * (1.0 + a / reach), SIDE / 2.0 * (1.0 - b / reach));
-    let mut svg = String::new();
-    open(&mut svg, "residuals in a*b*");
-    let half = SIDE / 2.0;
-    let _ = write!(
-        svg,
-        "<path d=\"M0 {half}H{SIDE}M{half} 0V{SIDE}\" stroke=\"#ccc\" fill=\"none\"/><text x=\"{}\" y=\"{}\">a*</text>\
-         <text x=\"{}\" y=\"12\">b*</text>",
-        SIDE - 16.0,
-        half - 4.0,
-        half + 4.0
-    );
-    for patch in used(patches) {
-        let (from, to) = (lab(patch.reference), lab(patch.corrected));
+        residuals.iter().map(|r| r.expected.a.abs().max(r.expected.b.abs())).fold(40.0, f64::max) * 1.15;
+    let place = |a: f64, b: f64| (HALF * (1.0 + a / reach), HALF * (1.0 - b / reach));
+    let arrow = |r: &Residual<'_>| {
+        let (from, to) = (r.expected, r.found);
         let (x, y) = place(from.a, from.b);
         let (u, v) = place(from.a + STRETCH * (to.a - from.a), from.b + STRETCH * (to.b - from.b));
-        let _ = write!(
-            svg,
-            "<line x1=\"{x:.1}\" y1=\"{y:.1}\" x2=\"{u:.1}\" y2=\"{v:.1}\" stroke=\"#333\"/><circle cx=\"{x:.1}\" \
-             cy=\"{y:.1}\" r=\"4\" fill=\"{}\" stroke=\"#666\" stroke-width=\".5\"><title>{} dE2000 {:.2}</title></circle>",
-            css(patch.reference),
-            super::escape(&patch.name),
-            patch.de2000
-        );
-    }
-    close(&mut svg, "Residuals in a*b*, five times as long as they are.");
-    svg
+        html! {
+            line x1=(at(x)) y1=(at(y)) x2=(at(u)) y2=(at(v)) stroke="#333" {}
+            (dot(x, y, r, &format!("dE2000 {:.2}", r.patch.de2000)))
+        }
+    };
+    let drawing = html! {
+        path d=(format!("M0 {HALF}H{SIDE}M{HALF} 0V{SIDE}")) stroke="#ccc" fill="none" {}
+        text x=(SIDE - 16.0) y=(HALF - 4.0) { "a*" }
+        text x=(HALF + 4.0) y="12" { "b*" }
+        @for residual in &residuals { (arrow(residual)) }
+    };
+    figure("residuals in a*b*", "Residuals in a*b*, five times as long as they are.", &drawing)
 }
 
 /// Lightness residuals over lightness.
-pub(super) fn lightness(patches: &[Judged]) -> String {
-    let off = |p: &Judged| lab(p.corrected).l - lab(p.reference).l;
-    let reach = used(patches).map(|p| off(p).abs()).fold(1.0, f64::max) * 1.15;
-    let half = SIDE / 2.0;
-    let mut svg = String::new();
-    open(&mut svg, "lightness residuals");
-    let _ = write!(
-        svg,
-        "<path d=\"M0 {half}H{SIDE}\" stroke=\"#ccc\"/><text x=\"0\" y=\"12\">+{reach:.1} L*</text><text x=\"0\" \
-         y=\"{}\">-{reach:.1} L*</text><text x=\"{}\" y=\"{}\">L* 100</text>",
-        SIDE - 4.0,
-        SIDE - 40.0,
-        half + 14.0
-    );
-    for patch in used(patches) {
-        let (x, y) = (SIDE * lab(patch.reference).l / 100.0, half * (1.0 - off(patch) / reach));
-        let _ = write!(
-            svg,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{}\" stroke=\"#666\" stroke-width=\".5\"><title>{} {:+.2}\
-             </title></circle>",
-            css(patch.reference),
-            super::escape(&patch.name),
-            off(patch)
-        );
-    }
-    close(&mut svg, "Lightness residuals.");
-    svg
+pub(super) fn lightness(patches: &[JudgedPatch]) -> Markup {
+    let residuals = plot::residuals(patches);
+    let off = |r: &Residual<'_>| r.found.l - r.expected.l;
+    let reach = residuals.iter().map(|r| off(r).abs()).fold(1.0, f64::max) * 1.15;
+    let point = |r: &Residual<'_>| {
+        let (x, y) = (SIDE * r.expected.l / 100.0, HALF * (1.0 - off(r) / reach));
+        dot(x, y, r, &format!("{:+.2}", off(r)))
+    };
+    let drawing = html! {
+        path d=(format!("M0 {HALF}H{SIDE}")) stroke="#ccc" {}
+        text x="0" y="12" { (format!("+{reach:.1} L*")) }
+        text x="0" y=(SIDE - 4.0) { (format!("-{reach:.1} L*")) }
+        text x=(SIDE - 40.0) y=(HALF + 14.0) { "L* 100" }
+        @for residual in &residuals { (point(residual)) }
+    };
+    figure("lightness residuals", "Lightness residuals.", &drawing)
 }
 
 /// Where the profile can be trusted: the disc of camera hues and saturations, grey where no patch is near and red where
 /// the model folds over.
-pub(super) fn trust(calibration: &Calibration, patches: &[Judged]) -> String {
-    const HUES: usize = 48;
-    const RINGS: usize = 10;
-    let position = |rgb: [f64; 3]| {
-        let largest = rgb.iter().copied().fold(1e-9, f64::max);
-        let least = rgb.iter().copied().fold(f64::INFINITY, f64::min).max(0.0);
-        let (angle, radius) =
-            (darkroot_profile::hue_plane::position(rgb) / 6.0 * std::f64::consts::TAU, 1.0 - least / largest);
-        [radius * angle.cos(), radius * angle.sin()]
-    };
-    let known: Vec<[f64; 2]> = used(patches).map(|p| position(p.rgb)).collect();
-    let sign = calibration.model.jacobian([0.5; 3]).determinant().signum();
-    let half = SIDE / 2.0;
-    let mut svg = String::new();
-    open(&mut svg, "where the profile can be trusted");
-    for ring in 0..RINGS {
-        for hue in 0..HUES {
-            let (inner, outer) = (ring as f64 / RINGS as f64, (ring + 1) as f64 / RINGS as f64);
-            let saturation = ((inner + outer) / 2.0).min(0.97);
-            let pure = darkroot_profile::hue_plane::at_position(6.0 * (hue as f64 + 0.5) / HUES as f64);
-            let rgb = pure.map(|p| (1.0 - saturation + saturation * p).max(0.02));
-            let here = position(rgb);
-            let near =
-                known.iter().map(|[x, y]| (x - here[0]).hypot(y - here[1])).fold(f64::INFINITY, f64::min);
-            let folds = calibration.model.jacobian(rgb).determinant() * sign <= 0.0;
-            let fill =
-                if folds { "#b00020".to_owned() } else { css(calibration.model.xyz(rgb.map(|v| v * 0.6))) };
-            // Full colour beside a patch, nearly none farther than a quarter of the disc away.
-            let opacity = if folds { 1.0 } else { (1.0 - near / 0.35).clamp(0.08, 1.0) };
-            let angle = |i: usize| i as f64 / HUES as f64 * std::f64::consts::TAU;
-            let point = |radius: f64, angle: f64| {
-                format!(
-                    "{:.1} {:.1}",
-                    half * (1.0 + radius * angle.cos()),
-                    half * (1.0 - radius * angle.sin())
-                )
-            };
-            let _ = write!(
-                svg,
-                "<path d=\"M{}L{}L{}L{}Z\" fill=\"{fill}\" fill-opacity=\"{opacity:.2}\"/>",
-                point(inner, angle(hue)),
-                point(outer, angle(hue)),
-                point(outer, angle(hue + 1)),
-                point(inner, angle(hue + 1))
-            );
+pub(super) fn trust(calibration: &Calibration, patches: &[JudgedPatch]) -> Markup {
+    let trust = plot::trust(calibration, patches);
+    let cell = |cell: &TrustCell| {
+        let colour = || css(calibration.model.xyz(cell.rgb.map(|v| v * 0.6)));
+        let fill = if cell.folds { "#b00020".to_owned() } else { colour() };
+        // Full colour beside a patch, nearly none farther than a quarter of the disc away.
+        let opacity = if cell.folds { 1.0 } else { (1.0 - cell.nearest / 0.35).clamp(0.08, 1.0) };
+        let ([inner, outer], [begin, end]) = (cell.radii, cell.angles);
+        let point = |radius: f64, angle: f64| {
+            let (x, y) = (HALF * (1.0 + radius * angle.cos()), HALF * (1.0 - radius * angle.sin()));
+            format!("{x:.1} {y:.1}")
+        };
+        let corners = [point(inner, begin), point(outer, begin), point(outer, end), point(inner, end)];
+        html! {
+            path d=(format!("M{}Z", corners.join("L"))) fill=(fill) fill-opacity=(format!("{opacity:.2}")) {}
         }
-    }
-    for [x, y] in &known {
-        let _ = write!(
-            svg,
-            "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"2.5\" fill=\"#fff\" stroke=\"#222\"/>",
-            half * (1.0 + x),
-            half * (1.0 - y)
-        );
-    }
-    let folded = 100.0 * lint::folds(&calibration.model);
-    close(
-        &mut svg,
-        &format!(
-            "Camera hues (round) and saturations (outwards) with the chart's patches: pale is extrapolated, dark red folds \
-             over ({folded:.1} % of the cube)."
-        ),
+    };
+    let drawing = html! {
+        @for one in &trust.cells { (cell(one)) }
+        @for [x, y] in &trust.patches {
+            circle cx=(at(HALF * (1.0 + x))) cy=(at(HALF * (1.0 - y))) r="2.5" fill="#fff" stroke="#222" {}
+        }
+    };
+    let caption = format!(
+        "Camera hues (round) and saturations (outwards) with the chart's patches: pale is extrapolated, dark red folds over \
+         ({:.1} % of the cube).",
+        100.0 * lint::folds(&calibration.model)
     );
-    svg
+    figure("where the profile can be trusted", &caption, &drawing)
 }

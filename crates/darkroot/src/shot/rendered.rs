@@ -7,6 +7,7 @@ use darkroot_colour::RgbSpace;
 use darkroot_photo::{Layout, Mosaic, Size};
 
 use crate::Error;
+use crate::fault::ChartError;
 
 /// Most pixels of a rendered picture.
 const MOST_PIXELS: u64 = 200_000_000;
@@ -19,18 +20,17 @@ pub(super) fn is_rendered(path: &Path) -> bool {
 
 /// Reads a picture as linear RGB, 1 = white.
 pub(super) fn read(path: &Path) -> Result<Mosaic<f32>, Error> {
-    let fault = |what: String| Error::Chart { path: path.to_owned(), what };
     let mut reader = image::ImageReader::open(path)
         .and_then(image::ImageReader::with_guessed_format)
         .map_err(|e| Error::read(path, &e))?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MOST_PIXELS * 8);
     reader.limits(limits);
-    let picture = reader.decode().map_err(|e| fault(format!("cannot be read as a picture: {e}")))?;
+    let picture = reader.decode().map_err(|e| Error::chart(path, ChartError::Picture(e)))?;
     let picture = picture.into_rgb32f();
     let size = Size { width: picture.width() as usize, height: picture.height() as usize };
     if size.area() == 0 {
-        return Err(fault("has no pixels".to_owned()));
+        return Err(Error::chart(path, ChartError::Empty));
     }
     let linear = |v: f32| RgbSpace::SRGB.curve.decode(f64::from(v)) as f32;
     let samples = picture.into_raw().into_iter().map(linear).collect();

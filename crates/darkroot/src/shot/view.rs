@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use darkroot_calibrate::shot::SensorLight;
 use darkroot_develop::{CameraMatrix, Frame};
 use darkroot_photo::metadata::{Directory, tag};
 use darkroot_photo::{AsShot, Camera, Layout, Orientation, Rect, Size};
 
 use super::rendered;
+use crate::fault::ChartError;
 use crate::{Error, Settings, files};
 
 /// Longest side of the picture in which charts are looked for.
@@ -39,16 +41,13 @@ impl View {
     /// A file that cannot be read or decoded.
     pub fn open(path: &Path, settings: &Settings) -> Result<Self, Error> {
         if rendered::is_rendered(path) {
-            let what = "is a rendered picture, not a raw file: a tone curve has changed its colours; take the raw file, \
-                        or add `--allow-rendered` for a profile that serves this rendering only";
-            return Err(Error::Chart { path: path.to_owned(), what: what.to_owned() });
+            return Err(Error::chart(path, ChartError::Rendered));
         }
         let bytes = files::read(path)?;
         let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
             .map_err(|source| Error::Raw { path: path.to_owned(), source })?;
         if matches!(capture.counts.layout(), Layout::Monochrome) {
-            let what = "is monochrome; a colour profile needs a colour sensor".to_owned();
-            return Err(Error::Chart { path: path.to_owned(), what });
+            return Err(Error::chart(path, ChartError::Monochrome));
         }
         let (active, crop) = (capture.active_area, capture.default_crop);
         let inner = crop.intersection(active).unwrap_or(active);
@@ -95,6 +94,16 @@ impl View {
             as_shot: None,
             exposure_seconds: None,
         })
+    }
+
+    /// Common name of the camera.
+    pub(crate) fn camera_name(&self) -> String {
+        common_name(&self.camera)
+    }
+
+    /// What can be measured.
+    pub(crate) fn sensor_light(&self) -> SensorLight<'_> {
+        SensorLight { light: &self.frame.light, saturation: self.frame.saturation }
     }
 
     /// From a place in the developed picture to one in the frame.
@@ -161,4 +170,9 @@ impl View {
         let longest = self.size.width.max(self.size.height);
         (1..=64).map(|k| k * least).find(|bin| longest / bin <= LONGEST).unwrap_or(64)
     }
+}
+
+/// Make and model of a camera as people call it.
+pub(crate) fn common_name(camera: &Camera) -> String {
+    format!("{} {}", camera.common_make, camera.common_model)
 }

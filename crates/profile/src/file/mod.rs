@@ -47,6 +47,9 @@
 //!
 //! Which parts a model has follows from its name; see [`crate::Kind`].
 
+mod fault;
+pub use fault::CalibrationFault;
+
 mod read;
 mod write;
 
@@ -54,7 +57,7 @@ pub use read::parse;
 pub use write::format;
 
 /// What can be wrong with a profile file. Each message completes "FILE: ".
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// Not TOML, or not with the fields of a profile.
@@ -76,12 +79,12 @@ pub enum Error {
         found: String,
     },
     /// A calibration with something missing or impossible.
-    #[error("has an unusable calibration for {light}: {what}")]
+    #[error("has an unusable calibration for {light}: {source}")]
     Calibration {
         /// Name of the light.
         light: String,
         /// What is wrong.
-        what: String,
+        source: CalibrationFault,
     },
     /// No calibration at all.
     #[error("has no [[calibration]]; a profile needs at least one light")]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use darkroot_colour::{Matrix3, Xy, Xyz};
 use serde::Deserialize;
 
-use super::{Error, FORMAT, VERSION, WHITE};
+use super::{CalibrationFault, Error, FORMAT, VERSION, WHITE};
 use crate::residual::Centre;
 use crate::{
     Calibration, Errors, Figures, HuePlane, Kind, Light, Model, Order, Origin, Patch, Polynomial, Profile,
@@ -149,14 +149,12 @@ fn origin(table: OriginTable) -> Origin {
 
 fn calibration(table: CalibrationTable) -> Result<Calibration, Error> {
     let name = table.light.clone();
-    read_calibration(table).map_err(|what| Error::Calibration { light: name, what })
+    read_calibration(table).map_err(|source| Error::Calibration { light: name, source })
 }
 
-const NOT_FINITE: &str = "a value is not a finite number";
-
-fn read_calibration(table: CalibrationTable) -> Result<Calibration, String> {
+fn read_calibration(table: CalibrationTable) -> Result<Calibration, CalibrationFault> {
     let light = light(table.light, table.xy, table.kelvin)?;
-    let kind: Kind = table.model.parse().map_err(|e: crate::kind::UnknownKind| e.to_string())?;
+    let kind: Kind = table.model.parse()?;
     let model = Model {
         root: table.terms.map(|terms| root_polynomial(kind, table.order, terms)).transpose()?,
         hue_plane: table.hue_plane.map(hue_plane).transpose()?,
@@ -164,84 +162,88 @@ fn read_calibration(table: CalibrationTable) -> Result<Calibration, String> {
         polynomial: table.polynomial.map(|terms| plain_polynomial(kind, terms)).transpose()?,
     };
     if !kind.fits(&model) {
-        return Err(format!("it does not have the parts of the model `{kind}`, or has others"));
+        return Err(CalibrationFault::Parts(kind));
     }
     let patches = table.patch.into_iter().map(patch).collect::<Result<_, _>>()?;
     Ok(Calibration { light, kind, model, figures: figures(&table.figures)?, patches })
 }
 
-fn light(name: String, [x, y]: [f64; 2], kelvin: Option<f64>) -> Result<Light, String> {
+fn light(name: String, [x, y]: [f64; 2], kelvin: Option<f64>) -> Result<Light, CalibrationFault> {
     if !(x > 0.0 && y > 0.0 && x + y < 1.0) {
-        return Err(format!("xy = [{x}, {y}] is no chromaticity of a light"));
+        return Err(CalibrationFault::Chromaticity([x, y]));
     }
     let light = Light { name, xy: Xy::new(x, y) };
     let own = light.kelvin();
     let agrees = |kelvin: f64| (kelvin / own - 1.0).abs() < 0.02;
     match kelvin {
-        Some(kelvin) if !agrees(kelvin) => {
-            Err(format!("kelvin = {kelvin} is not the colour temperature of its xy, {own:.0}"))
-        }
+        Some(kelvin) if !agrees(kelvin) => Err(CalibrationFault::Kelvin { kelvin, own }),
         _ => Ok(light),
     }
 }
 
-fn root_polynomial(kind: Kind, order: Option<u8>, mut terms: Terms) -> Result<RootPolynomial, String> {
+fn root_polynomial(
+    kind: Kind,
+    order: Option<u8>,
+    mut terms: Terms,
+) -> Result<RootPolynomial, CalibrationFault> {
     let order = match (order, kind) {
-        (Some(number), _) => Order::new(number).ok_or_else(|| format!("there is no order {number}"))?,
+        (Some(number), _) => Order::new(number).ok_or(CalibrationFault::Order(number))?,
         (None, Kind::Linear) => Order::One,
         (None, Kind::Root(order)) => order,
-        (None, _) => return Err("`order` is missing".to_owned()),
+        (None, _) => return Err(CalibrationFault::NoOrder),
     };
     let coefficients =
         order.terms().iter().map(|t| take(&mut terms, &t.name())).collect::<Result<Vec<_>, _>>()?;
     nothing_left(&terms, &format!("order {}", order.number()))?;
-    RootPolynomial::new(order, coefficients).ok_or_else(|| NOT_FINITE.to_owned())
+    RootPolynomial::new(order, coefficients).ok_or(CalibrationFault::SOMEWHERE)
 }
 
-fn plain_polynomial(kind: Kind, mut terms: Terms) -> Result<Polynomial, String> {
+fn plain_polynomial(kind: Kind, mut terms: Terms) -> Result<Polynomial, CalibrationFault> {
     let Kind::Polynomial(degree) = kind else {
-        return Err(format!("the model `{kind}` has no [calibration.polynomial]"));
+        return Err(CalibrationFault::NoPolynomial(kind));
     };
     let coefficients = polynomial::terms(degree)
         .iter()
         .map(|t| take(&mut terms, &polynomial::name(*t)))
         .collect::<Result<Vec<_>, _>>()?;
     nothing_left(&terms, &format!("degree {degree}"))?;
-    Polynomial::new(degree, coefficients).ok_or_else(|| NOT_FINITE.to_owned())
+    Polynomial::new(degree, coefficients).ok_or(CalibrationFault::SOMEWHERE)
 }
 
-fn take(terms: &mut Terms, name: &str) -> Result<[f64; 3], String> {
-    terms.remove(name).ok_or_else(|| format!("term `{name}` is missing"))
+fn take(terms: &mut Terms, name: &str) -> Result<[f64; 3], CalibrationFault> {
+    terms.remove(name).ok_or_else(|| CalibrationFault::MissingTerm(name.to_owned()))
 }
 
-fn nothing_left(terms: &Terms, what: &str) -> Result<(), String> {
-    terms.keys().next().map_or(Ok(()), |extra| Err(format!("term `{extra}` does not belong to {what}")))
+fn nothing_left(terms: &Terms, of: &str) -> Result<(), CalibrationFault> {
+    match terms.keys().next() {
+        None => Ok(()),
+        Some(extra) => Err(CalibrationFault::ExtraTerm { term: extra.to_string(), of: of.to_owned() }),
+    }
 }
 
-fn hue_plane(table: HuePlaneTable) -> Result<HuePlane, String> {
+fn hue_plane(table: HuePlaneTable) -> Result<HuePlane, CalibrationFault> {
     let matrix = |values: Vec<f64>| match values.as_slice() {
         [..] if values.len() == 9 => Ok(Matrix3::from_row_slice(&values)),
-        _ => Err(format!("a matrix of hue_plane has {} values, not 9 numbers", values.len())),
+        _ => Err(CalibrationFault::Matrix(values.len())),
     };
     let knots = table.matrices.into_iter().map(matrix).collect::<Result<Vec<_>, _>>()?;
     let count = knots.len();
-    HuePlane::new(knots)
-        .ok_or_else(|| format!("hue_plane has {count} matrices (6, 12, 18 ... are needed) or {NOT_FINITE}"))
+    HuePlane::new(knots).ok_or(CalibrationFault::Matrices(count))
 }
 
-fn residual(table: ResidualTable) -> Result<Residual, String> {
+fn residual(table: ResidualTable) -> Result<Residual, CalibrationFault> {
     let centre = |[r, g, b, x, y, z]: [f64; 6]| Centre { rgb: [r, g, b], weight: [x, y, z] };
-    Residual::new(table.centres.into_iter().map(centre).collect())
-        .ok_or_else(|| format!("a centre of residual has no chromaticity or {NOT_FINITE}"))
+    Residual::new(table.centres.into_iter().map(centre).collect()).ok_or(CalibrationFault::Centre)
 }
 
-fn figures(table: &FiguresTable) -> Result<Figures, String> {
+fn figures(table: &FiguresTable) -> Result<Figures, CalibrationFault> {
     let summary = |v: [f64; 4]| match v.iter().all(|v| v.is_finite()) {
         true => Ok(Summary { mean: v[0], median: v[1], p95: v[2], max: v[3] }),
-        false => Err(NOT_FINITE.to_owned()),
+        false => Err(CalibrationFault::SOMEWHERE),
     };
-    let read =
-        |t: &ErrorsTable| Ok::<_, String>(Errors { de2000: summary(t.de2000)?, de_uv: summary(t.de_uv)? });
+    let read = |t: &ErrorsTable| {
+        Ok::<_, CalibrationFault>(Errors { de2000: summary(t.de2000)?, de_uv: summary(t.de_uv)? })
+    };
     let errors = |table: Option<&ErrorsTable>| table.map(read).transpose();
     Ok(Figures {
         training: errors(table.training.as_ref())?,
@@ -250,10 +252,10 @@ fn figures(table: &FiguresTable) -> Result<Figures, String> {
     })
 }
 
-fn patch(table: PatchTable) -> Result<Patch, String> {
+fn patch(table: PatchTable) -> Result<Patch, CalibrationFault> {
     let values = table.rgb.iter().chain(&table.xyz).chain([&table.de2000]);
     if !values.into_iter().all(|v| v.is_finite()) {
-        return Err(format!("patch {}: {NOT_FINITE}", table.name));
+        return Err(CalibrationFault::NotFinite { place: Some(format!("patch {}", table.name)) });
     }
     let [x, y, z] = table.xyz;
     Ok(Patch { name: table.name, rgb: table.rgb, xyz: Xyz::new(x, y, z), de2000: table.de2000 })

@@ -1,7 +1,7 @@
 //! Fits of models to colours whose camera RGB and XYZ are both known.
 //!
 //! Every fit is linear least squares by QR decomposition, and gives, beside the model, what each colour would have
-//! been had it been left out of the fit. [`choose`] compares the kinds by that.
+//! been had it been left out of the fit. [`choose`] knows which fit belongs to which kind of model.
 
 pub mod samples;
 pub use samples::Samples;
@@ -35,7 +35,7 @@ pub mod white;
 pub use white::white_through;
 
 pub mod choose;
-pub use choose::{Candidate, fit};
+pub use choose::{Background, Candidate, fit, fit_knowing};
 
 use darkroot_colour::Xyz;
 

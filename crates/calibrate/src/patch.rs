@@ -1,4 +1,4 @@
-//! Patches as they were measured and as they are judged.
+//! A patch of a chart: as it was measured, and with what a model makes of it.
 
 use darkroot_chart::ReferenceColour;
 use darkroot_colour::adaptation::bradford;
@@ -6,7 +6,7 @@ use darkroot_colour::difference::de2000;
 use darkroot_colour::{Vector3, Xyz, white};
 use darkroot_profile::Patch;
 
-use crate::light::NamedLight;
+use crate::LightSource;
 
 /// Share of clipped samples from which a patch counts as clipped.
 const CLIPPED: f64 = 0.001;
@@ -42,7 +42,7 @@ pub(crate) fn is_clipped(share: f64) -> bool {
 
 /// A patch with what the model makes of it; XYZ relative to D50.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub struct JudgedPatch {
     /// Its name.
     pub name: String,
     /// Balanced camera RGB.
@@ -61,8 +61,8 @@ pub struct Judged {
     pub excluded: Option<String>,
 }
 
-impl Judged {
-    pub(super) fn new(
+impl JudgedPatch {
+    pub(crate) fn new(
         patch: &MeasuredPatch,
         rgb: [f64; 3],
         reference: Xyz,
@@ -82,7 +82,7 @@ impl Judged {
         }
     }
 
-    pub(super) fn for_profile(&self) -> Patch {
+    pub(crate) fn for_profile(&self) -> Patch {
         // Six digits are more than any measurement has.
         let round = |v: f64| (v * 1e6).round() / 1e6;
         let Xyz { x, y, z } = self.reference;
@@ -96,15 +96,15 @@ impl Judged {
 }
 
 /// How reference colours become XYZ under the light.
-pub(super) struct Reference<'a> {
-    light: &'a NamedLight,
+pub(crate) struct Reference<'a> {
+    light: &'a LightSource,
     from_d50: darkroot_colour::Matrix3,
 }
 
 impl<'a> Reference<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         patches: &[MeasuredPatch],
-        light: &'a NamedLight,
+        light: &'a LightSource,
         light_white: Xyz,
         notes: &mut Vec<String>,
     ) -> Self {
@@ -127,7 +127,7 @@ impl<'a> Reference<'a> {
     }
 
     /// XYZ of a patch under the light, relative to its white.
-    pub(super) fn xyz(&self, patch: &MeasuredPatch) -> Xyz {
+    pub(crate) fn xyz(&self, patch: &MeasuredPatch) -> Xyz {
         match (&self.light.spectrum, patch.reference.spectrum()) {
             (Some(light), Some(reflectance)) => reflectance.reflected_xyz(light),
             _ => Xyz::from(self.from_d50 * Vector3::from(patch.reference.xyz_d50())),
