@@ -23,8 +23,6 @@ pub use settings::{Engine, ProfileChoice, Settings, SettingsError};
 pub mod recipe;
 pub use recipe::{Effective, Key, Layer, Layers, Origin, RecipeError};
 
-pub mod batch;
-
 pub mod naming;
 pub use naming::{Job, NamingError, Target, plan_outputs};
 
@@ -71,7 +69,7 @@ pub mod report;
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};
 
-mod files;
+pub mod files;
 pub use files::{abandon, write_text};
 
 #[cfg(feature = "imagepipe")]

@@ -2,7 +2,7 @@
 
 mod plots;
 mod shown;
-pub(crate) use shown::base64;
+pub use shown::base64;
 
 use std::fmt::Write as _;
 
