@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use super::budget::{Budget, Phase};
 use super::crew_options::{CrewOptions, Workers};
 use super::failure::Failure;
-use super::process::{Exit, Process};
+use super::process::Exit;
+use super::running_worker::RunningWorker;
 use super::stop::Stop;
 use super::task::{Answer, Order, Task};
-use super::thread::Thread;
 use super::wording::Wording;
 
 /// How often time-outs and wishes to stop are looked at.
@@ -78,7 +78,7 @@ pub(crate) struct Crew {
 #[derive(Default)]
 struct Slot {
     /// With its number.
-    worker: Option<(u64, Worker)>,
+    worker: Option<(u64, RunningWorker)>,
     work: Option<(Work, Instant)>,
     /// The work's end was told already; the worker still has to let go of it.
     told: bool,
@@ -87,31 +87,6 @@ struct Slot {
 impl Slot {
     fn path(&self) -> PathBuf {
         self.work.as_ref().map(|(work, _)| work.task.input().clone()).unwrap_or_default()
-    }
-}
-
-enum Worker {
-    Process(Process),
-    Thread(Thread),
-}
-
-impl Worker {
-    fn send(&mut self, order: &Order) {
-        match self {
-            Self::Process(process) => process.send(order),
-            Self::Thread(thread) => thread.send(order),
-        }
-    }
-
-    /// Waits so long for it to end by itself; a process is then ended.
-    fn end(self, grace: Duration) -> Option<Exit> {
-        match self {
-            Self::Process(process) => process.end(grace),
-            Self::Thread(thread) => {
-                thread.end();
-                None
-            }
-        }
     }
 }
 
@@ -215,14 +190,7 @@ impl Crew {
         self.next_number += 1;
         let sender = self.sender.clone();
         let on_answer = move |answer| sender.send((slot, number, answer)).is_ok();
-        let worker = match &self.options.workers {
-            Workers::Processes(program, arguments) => {
-                Worker::Process(Process::start(program, arguments, on_answer)?)
-            }
-            Workers::Threads(store) => {
-                Worker::Thread(Thread::start(store.clone(), self.options.wording.clone(), on_answer)?)
-            }
-        };
+        let worker = RunningWorker::start(&self.options, on_answer)?;
         self.slots[slot].worker = Some((number, worker));
         Ok(())
     }

@@ -30,7 +30,7 @@
 //! **What it does not do:** it prints nothing, reads no arguments and knows no options: errors say what is wrong, and
 //! the program that shows them says what to do ([`Wording`]).
 //!
-//! The files below stand in an order in which each uses only those above it.
+//! No two files use each other, not even by way of others.
 
 pub mod facts;
 pub mod failure;
@@ -63,10 +63,12 @@ mod task;
 mod thumbnail;
 
 mod chart_shot;
+mod develop_task;
 pub mod worker;
 
 mod budget;
 mod process;
+mod running_worker;
 mod thread;
 
 mod crew;
@@ -81,6 +83,7 @@ pub mod session;
 pub mod batch;
 pub mod sheet;
 
+pub mod notice;
 mod settle;
 mod wake;
 pub mod watch;
@@ -97,6 +100,7 @@ pub use history::History;
 pub use item::{BatchPlan, Item, OnCollision, PlanOptions, State, Why};
 pub use journal::JournalError;
 pub use names::Collision;
+pub use notice::{Notice, WatchError, WatchOptions, Watched};
 pub use outcome::{Event, Summary};
 pub use plan::{check, plan_only};
 pub use plan_error::PlanError;
@@ -105,6 +109,6 @@ pub use settings_by_file::SettingsByFile;
 pub use shard::{Shard, ShardError};
 pub use sheet::Sheet;
 pub use stop::Stop;
-pub use watch::{Notice, WatchError, WatchOptions, Watched, watch};
+pub use watch::watch;
 pub use wording::Wording;
 pub use worker::serve;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// A wish to stop, shared between who has it (a signal handler) and who hears it (the batch).
+/// A wish to stop, shared between who has it (a signal handler) and who heeds it (the batch).
 #[derive(Debug, Clone, Default)]
 pub struct Stop(Arc<AtomicU8>);
 

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use darkroot::Error;
 use serde::{Deserialize, Serialize};
 
 use super::facts::{CameraNames, ChartLook, Header, Identity, SessionColour};
@@ -134,4 +135,17 @@ pub(crate) struct TaskError {
     /// One sentence that names the file.
     #[serde(rename = "error")]
     pub(crate) words: String,
+}
+
+/// What went wrong in a task.
+pub(crate) enum Fault {
+    /// In words already.
+    Task(TaskError),
+    Library(Error),
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Library(error)
+    }
 }

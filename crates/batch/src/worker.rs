@@ -6,17 +6,14 @@
 use std::error::Error as StdError;
 use std::io::{BufRead, Write};
 use std::path::Path;
-use std::time::Instant;
 
-use darkroot::job::develop_bytes;
-use darkroot::recipe::Effective;
-use darkroot::{Error, Format, Job, ProfileStore, Settings, files};
-use darkroot_photo::{Camera, Picture};
+use darkroot::{Error, ProfileStore, Settings, files};
 
+use super::develop_task::{develop, settings};
 use super::facts::{CameraNames, ChartLook, Identity, modified};
 use super::failure::FailureKind;
 use super::raw_head::RawHead;
-use super::task::{Answer, Develop, Developed, Order, Task, TaskError};
+use super::task::{Answer, Developed, Fault, Order, Task, TaskError};
 use super::{chart_shot, hash, need, process_limits, thumbnail};
 
 /// Works as a worker process until stdin ends: the parent is done, or gone. `words` words errors for people;
@@ -185,19 +182,6 @@ fn perform(
     }))
 }
 
-/// What went wrong in a task.
-enum Fault {
-    /// In words already.
-    Task(TaskError),
-    Library(Error),
-}
-
-impl From<Error> for Fault {
-    fn from(error: Error) -> Self {
-        Self::Library(error)
-    }
-}
-
 /// Bytes that the task takes.
 fn needed(task: &Task, input: &Input) -> Result<u64, TaskError> {
     let len = input.bytes.len() as u64;
@@ -240,7 +224,7 @@ fn execute(task: Task, input: Input, needed: u64, store: &ProfileStore) -> Resul
     match task {
         Task::Header { .. } => Ok(Answer::Header(head.header)),
         Task::Develop(task) => {
-            let developed = develop(&task, input, &head.camera, store)?;
+            let developed = develop(&task, input.bytes, input.identity, &head.camera, store)?;
             Ok(Answer::Developed(Box::new(Developed { needed, ..developed })))
         }
         Task::Look { layout, .. } => {
@@ -275,67 +259,6 @@ fn with_same_content<T>(
     let result = work()?;
     check()?;
     Ok(result)
-}
-
-/// Settings and format of a task. The parent has checked them.
-fn settings(task: &Develop) -> Result<(Settings, Format), TaskError> {
-    let wrong = |e: darkroot::RecipeError| {
-        let words = format!("{}: {e}", task.input.display());
-        TaskError { kind: FailureKind::File, words }
-    };
-    let effective = Effective::from_texts(&task.texts).map_err(wrong)?;
-    let settings = effective.settings().map_err(wrong)?;
-    let format = Format::from_extension(&task.format).unwrap_or_else(|| settings.default_format());
-    Ok((settings, format))
-}
-
-fn develop(task: &Develop, input: Input, camera: &Camera, store: &ProfileStore) -> Result<Developed, Fault> {
-    let start = Instant::now();
-    let (mut settings, format) = settings(task).map_err(Fault::Task)?;
-    settings.format = Some(format);
-    settings.overwrite = task.overwrite;
-    settings.scratch = Some(task.scratch.clone());
-    let names = CameraNames::from(camera);
-    let colour = task.session.iter().find(|c| c.camera == names);
-    if let Some(colour) = colour {
-        colour.apply(&mut settings);
-    }
-    let Input { bytes, identity, .. } = input;
-    let job = Job { input: task.input.clone(), output: task.output.clone() };
-    let mut small = None;
-    let mut seen = |_: &Camera, picture: &Picture| {
-        if task.thumbnail {
-            small = thumbnail::of_picture(picture);
-        }
-    };
-    // The bytes whose hash is recorded are the ones that are decoded.
-    let report = develop_bytes(&job, || Ok(bytes), &settings, store, &|_| {}, &mut seen)?;
-    let profile = hash::profile(&settings, camera, store)?;
-    let written = written(&task.output).map_err(|e| Error::read(&task.output, &e))?;
-    let mut notes = report.notes;
-    if let Some(colour) = colour {
-        notes.push(format!("white balance and profile from the chart in {}", colour.chart));
-    }
-    Ok(Developed {
-        source: identity,
-        written,
-        camera: names,
-        profile,
-        colours: report.colours,
-        width: report.width,
-        height: report.height,
-        seconds: start.elapsed().as_secs_f64(),
-        notes,
-        thumbnail: small,
-        peak: process_limits::peak(),
-        needed: 0,
-    })
-}
-
-/// What a finished output is.
-fn written(path: &Path) -> std::io::Result<Identity> {
-    let data = std::fs::metadata(path)?;
-    Ok(Identity { size: data.len(), modified: modified(&data), sha256: hash::file(path)? })
 }
 
 #[cfg(test)]
