@@ -72,8 +72,8 @@ struct ChartFound<'a> {
 }
 
 impl ChartSearch<'_> {
-    /// Looks for charts in all files, or in the one named, and makes a profile for each folder and camera. `say` hears
-    /// in words what was found.
+    /// Looks for charts in all files, or in the one named, and makes a profile for each folder and camera. `say`
+    /// is told in words what was found.
     ///
     /// # Errors
     /// The shot that was named shows no chart, or no profile can be made of it.

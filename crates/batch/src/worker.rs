@@ -244,21 +244,15 @@ fn execute(task: Task, input: Input, needed: u64, store: &ProfileStore) -> Resul
     }
 }
 
-/// Runs what reads a file by its path, and checks that it read the content that is recorded: the file has that
-/// content before and after.
+/// Runs what reads a file by its path, and checks that it still has the content that is recorded.
 fn with_same_content<T>(
     path: &Path,
     sha256: &str,
     work: impl FnOnce() -> Result<T, Error>,
 ) -> Result<T, Fault> {
-    let check = || {
-        let now = hash::file(path).map_err(|e| Error::read(path, &e))?;
-        if now == sha256 { Ok(()) } else { Err(Fault::Task(changing(path))) }
-    };
-    check()?;
     let result = work()?;
-    check()?;
-    Ok(result)
+    let now = hash::file(path).map_err(|e| Error::read(path, &e))?;
+    if now == sha256 { Ok(result) } else { Err(Fault::Task(changing(path))) }
 }
 
 #[cfg(test)]

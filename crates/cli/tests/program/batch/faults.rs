@@ -1,8 +1,8 @@
 //! One bad thing costs one file, or stops everything in order.
 
 use darkroot::ProfileStore;
-use darkroot::batch::{self, Batch, CrewOptions, Event, PlanOptions, Recipes, Search, Session, Stop};
 use darkroot::recipe::{Layer, Layers};
+use darkroot_batch::{Batch, CrewOptions, Event, PlanOptions, Search, Session, SettingsByFile, Stop, find};
 
 use super::*;
 
@@ -75,15 +75,15 @@ fn with_worker(desk: &Desk, script: &str) -> Vec<(String, Result<(), String>)> {
         CrewOptions::new("sh".into(), vec!["-c".into(), script.into(), "sh".into(), program.into()]);
     (crew.jobs, crew.threads) = (2, 2);
     let search = Search { inputs: vec![desk.path("in").to_str().unwrap().into()], ..Search::default() };
-    let mut recipes = Recipes::new(Layers::new(None, Layer::flags([]).unwrap(), true).unwrap());
+    let mut settings = SettingsByFile::new(Layers::new(None, Layer::flags([]).unwrap(), true).unwrap());
     let mut run = Batch::open(&options, crew, ProfileStore::builtin()).unwrap();
-    let sources = batch::find(&search, &desk.path("out")).unwrap();
+    let sources = find(&search, &desk.path("out")).unwrap();
     let stop = Stop::default();
-    let plan = run.plan(sources, &options, &mut recipes, &Session::default(), &stop).unwrap();
+    let plan = run.plan(sources, &options, &mut settings, &Session::default(), &stop).unwrap();
     let mut outcomes = Vec::new();
     run.run(&plan, &stop, &mut |event| match event {
         Event::Done { item, .. } => outcomes.push((item.source.key.clone(), Ok(()))),
-        Event::Failed { item, error } => outcomes.push((item.source.key.clone(), Err(error.to_owned()))),
+        Event::Failed { item, words, .. } => outcomes.push((item.source.key.clone(), Err(words.to_owned()))),
         _ => {}
     })
     .unwrap();
