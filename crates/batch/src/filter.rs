@@ -19,7 +19,7 @@ pub(crate) const MATCHING: MatchOptions = MatchOptions {
 };
 
 /// Inputs that make no batch.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FindError {
     /// Nothing there.
@@ -34,7 +34,7 @@ pub enum FindError {
         /// As it was given.
         pattern: String,
         /// What is wrong with it.
-        reason: String,
+        reason: glob::PatternError,
     },
 }
 
@@ -49,8 +49,7 @@ impl Filter {
     pub(crate) fn new(include: &[String], exclude: &[String], out: &Path) -> Result<Self, FindError> {
         let patterns = |texts: &[String]| -> Result<Vec<Pattern>, FindError> {
             let one = |text: &String| {
-                Pattern::new(text)
-                    .map_err(|e| FindError::Pattern { pattern: text.clone(), reason: e.to_string() })
+                Pattern::new(text).map_err(|e| FindError::Pattern { pattern: text.clone(), reason: e })
             };
             texts.iter().map(one).collect()
         };

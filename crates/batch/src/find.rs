@@ -90,7 +90,7 @@ fn expand(search: &Search) -> Result<Vec<PathBuf>, FindError> {
             return Err(missing());
         }
         let matches = glob::glob_with(input, MATCHING)
-            .map_err(|e| FindError::Pattern { pattern: input.clone(), reason: e.to_string() })?;
+            .map_err(|e| FindError::Pattern { pattern: input.clone(), reason: e })?;
         let before = roots.len();
         // Folders that match bring their files by the pattern itself or not at all.
         roots.extend(matches.flatten().filter(|p| p.is_file()));

@@ -58,7 +58,8 @@ pub struct Summary {
     pub pixels: u64,
     /// Seconds of the whole run.
     pub seconds: f64,
-    /// Most memory that one worker held, bytes; 0 where the system does not tell.
+    /// Most memory that one worker process held, or this process where its threads are the workers, bytes; 0 where the
+    /// system does not tell.
     pub peak: u64,
     /// Most memory that was set aside for one worker, bytes.
     pub estimated: u64,
