@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::wording::Wording;
+
 /// Why a file was not developed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -68,6 +70,14 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// In words: a worker's own where it said why, else as the program words it.
+    pub(crate) fn words(&self, wording: &Wording) -> String {
+        match self {
+            Self::Worker { words, .. } => words.clone(),
+            other => wording.of(other),
+        }
+    }
+
     /// What the rest of the batch must know of it.
     pub fn kind(&self) -> FailureKind {
         match self {

@@ -110,7 +110,7 @@ impl<'a> Run<'a> {
         }
         let kind = failure.kind();
         match kind {
-            FailureKind::DiskFull => return self.stop(self.wording.of(failure)),
+            FailureKind::DiskFull => return self.stop(failure.words(&self.wording)),
             FailureKind::Output | FailureKind::Died => {
                 if let Some(reason) = self.vanished() {
                     return self.stop(reason);
@@ -126,7 +126,7 @@ impl<'a> Run<'a> {
                 }
             }
         }
-        let words = self.wording.of(failure);
+        let words = failure.words(&self.wording);
         let record = Record::Failed(Failed {
             input: item.source.key.clone(),
             output: item.output.clone(),

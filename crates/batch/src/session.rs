@@ -210,7 +210,7 @@ impl ChartSearch<'_> {
                     let request = requests[work.id].clone();
                     failed.keep(note(Record::Calibrated(Calibrated { input, request, colour })));
                 }
-                Progress::Ended(Err(failure)) => fault(wording.of(&failure)),
+                Progress::Ended(Err(failure)) => fault(failure.words(&wording)),
                 _ => {}
             }
             if failed.any() { Next::Finish } else { Next::GoOn }
