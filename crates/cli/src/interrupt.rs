@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use darkroot::batch::Stop;
+use darkroot_batch::Stop;
 
 /// Set by commands that can end in order.
 static STOP: OnceLock<Stop> = OnceLock::new();

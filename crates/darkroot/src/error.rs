@@ -181,7 +181,8 @@ pub enum Error {
 }
 
 impl Error {
-    pub(crate) fn chart(path: &Path, source: impl Into<ChartError>) -> Self {
+    /// A chart that cannot be used.
+    pub fn chart(path: &Path, source: impl Into<ChartError>) -> Self {
         Self::Chart { path: path.to_owned(), source: source.into() }
     }
 
@@ -193,7 +194,8 @@ impl Error {
         Self::Fit { light: light.light.name.clone(), source }
     }
 
-    pub(crate) fn read(path: &Path, error: &io::Error) -> Self {
+    /// A file that cannot be read, with the cause in words.
+    pub fn read(path: &Path, error: &io::Error) -> Self {
         let reason = match error.kind() {
             io::ErrorKind::NotFound => "there is no such file; check the name".to_owned(),
             io::ErrorKind::PermissionDenied => "permission denied; check the file's rights".to_owned(),
@@ -203,7 +205,8 @@ impl Error {
         Self::Read { path: path.to_owned(), reason }
     }
 
-    pub(crate) fn write(path: &Path, error: &io::Error) -> Self {
+    /// A file that cannot be written, with the cause in words.
+    pub fn write(path: &Path, error: &io::Error) -> Self {
         if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) {
             return Self::DiskFull { path: path.to_owned() };
         }

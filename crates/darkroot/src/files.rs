@@ -40,7 +40,10 @@ impl Drop for Listed {
 }
 
 /// Reads an input file.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
+///
+/// # Errors
+/// A file that is not there or cannot be read.
+pub fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let attempt = || {
         // On some systems a folder opens and only fails at the first read, with an obscure message.
         if fs::metadata(path)?.is_dir() {
@@ -94,7 +97,7 @@ pub(crate) fn write<E>(
 }
 
 /// Flushes a folder's entries to the disk, where the system can: after a power cut a renamed file has its new name.
-pub(crate) fn sync_folder(folder: &Path) {
+pub fn sync_folder(folder: &Path) {
     // Systems that cannot open folders keep their entries safe by themselves.
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();

@@ -104,7 +104,10 @@ fn refuse_existing(job: &Job, settings: &Settings) -> Result<(), Error> {
 
 /// As [`develop()`], with the bytes of the input from `read`. `seen` gets to see the camera and the
 /// picture before that is written.
-pub(crate) fn develop_bytes(
+///
+/// # Errors
+/// As [`develop()`].
+pub fn develop_bytes(
     job: &Job,
     read: impl FnOnce() -> Result<Vec<u8>, Error>,
     settings: &Settings,

@@ -23,8 +23,6 @@ pub use settings::{Engine, Key, NotAValue, ProfileChoice, Settings, SettingsErro
 pub mod recipe;
 pub use recipe::{Effective, Layer, Layers, Origin, RecipeError};
 
-pub mod batch;
-
 pub mod photo;
 pub use photo::{Photo, PlanError};
 
@@ -75,7 +73,7 @@ pub mod report;
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};
 
-mod files;
+pub mod files;
 pub use files::{abandon, write_text};
 
 #[cfg(feature = "imagepipe")]

@@ -216,7 +216,7 @@ fn header(input: &Path) -> Option<(String, String)> {
 }
 
 /// Camera and date of a capture as they can stand in a file name.
-pub(crate) fn header_of(capture: &darkroot_photo::Capture) -> (String, String) {
+pub fn header_of(capture: &darkroot_photo::Capture) -> (String, String) {
     let clean = |s: String| s.replace(|c: char| !c.is_alphanumeric() && c != '-' && c != '.', "_");
     let date = capture.metadata.text(Directory::Exif, tag::DATE_TIME_ORIGINAL).and_then(|d| d.get(..10));
     let date = date.map_or_else(|| "undated".to_owned(), |d| d.replace(':', "-"));

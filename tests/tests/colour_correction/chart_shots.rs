@@ -108,10 +108,8 @@ fn shot(camera: &str, light_name: &str, layout: &str, patches: &[Spectrum]) -> (
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn a_shot_makes_a_profile_nearly_as_good_as_true_values() {
-    if data::folder().is_none() {
-        return;
-    }
     let classic = data::classic_24();
     let sg = data::sg_140();
     let mut worst: f64 = 0.0;
@@ -267,10 +265,8 @@ fn both() -> ShotOptions {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn a_change_of_the_lights_colour_is_warned_of_and_taken_out() {
-    if data::folder().is_none() {
-        return;
-    }
     for (seed, camera) in (20..).zip(CAMERAS) {
         let found = outcome(camera, Mixed { window: [0.3, 0.7], veil: [0.0; 3], seed }, even_out());
         assert!(found.warned, "{camera}");
@@ -280,10 +276,8 @@ fn a_change_of_the_lights_colour_is_warned_of_and_taken_out() {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn a_coloured_veil_is_taken_out() {
-    if data::folder().is_none() {
-        return;
-    }
     for (seed, camera) in (40..).zip(CAMERAS) {
         let veil = [-0.002, 0.003, 0.005];
         let found = outcome(camera, Mixed { window: [0.4; 2], veil, seed }, correct_glare());
@@ -293,10 +287,8 @@ fn a_coloured_veil_is_taken_out() {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn corrections_do_no_harm_where_there_is_nothing_to_correct() {
-    if data::folder().is_none() {
-        return;
-    }
     for (seed, camera) in (60..).step_by(10).zip(CAMERAS) {
         for (k, options) in (0..).zip([even_out(), correct_glare(), both()]) {
             let found =
@@ -310,8 +302,9 @@ fn corrections_do_no_harm_where_there_is_nothing_to_correct() {
 
 /// A lamp in front, a window in dusk behind, a black level in the file that is too high; see docs/charts.md.
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_passport_in_mixed_light_tells_its_faults() {
-    let Some(spectra) = data::folder() else { return };
+    let spectra = data::folder();
     let file = spectra.join("../raw/canon_550d_passport_chart_14bit_packed.dng");
     let made = |light: &str, options: ShotOptions| {
         let light = darkroot::light::find(light).unwrap();

@@ -8,20 +8,13 @@ use darkroot_colour::illuminant::Illuminant;
 use darkroot_profile::Sensitivities;
 use darkroot_profile::spectra::in_31_channels;
 
-/// The folder of spectra, where there is one.
-pub(super) fn folder() -> Option<PathBuf> {
-    let data = std::env::var_os("DARKROOT_DATA").map(PathBuf::from);
-    // Tests run in the folder of their package; the variable is meant from the top of the repository.
-    let top = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folder = data.map(|data| top.join(data).join("spectra")).filter(|folder| folder.is_dir());
-    if folder.is_none() {
-        eprintln!("DARKROOT_DATA does not point to spectra: nothing is tested here");
-    }
-    folder
+/// The folder of spectra. Tests that need it are ignored where it is not (`build.rs`).
+pub(super) fn folder() -> PathBuf {
+    darkroot_tests::real_files("spectra")
 }
 
 fn file(name: &str) -> PathBuf {
-    folder().unwrap().join(name).with_extension("csv")
+    folder().join(name).with_extension("csv")
 }
 
 /// A camera of the data folder.
@@ -40,7 +33,7 @@ pub(super) fn light(name: &str) -> Spectrum {
 }
 
 fn listed(name: &str, list: &str) -> Vec<Spectrum> {
-    let names = std::fs::read_to_string(folder().unwrap().join(list)).unwrap();
+    let names = std::fs::read_to_string(folder().join(list)).unwrap();
     let names: Vec<String> = names.split_whitespace().map(str::to_owned).collect();
     spectra::read(&file(name)).unwrap().only(&names).unwrap().reflectances()
 }

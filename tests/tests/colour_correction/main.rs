@@ -1,5 +1,5 @@
 //! The colour correction against the published tables and against cameras and colours that it never saw. Needs the
-//! measured spectra that `DARKROOT_DATA` points to; without them each test says so and passes.
+//! measured spectra that `DARKROOT_DATA` points to; without them the tests are ignored.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // Helpers of tests; figures are meant to be seen.
 

@@ -70,10 +70,8 @@ fn assert_row(what: &str, errors: Errors, expected: [f64; 4]) {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn table_1_is_reproduced() {
-    if data::folder().is_none() {
-        return;
-    }
     for (name, set, rows) in
         [("SG", data::sg_96(), SG), ("DC", data::dc_180(), DC), ("SFU", data::sfu_1995(), SFU)]
     {
@@ -94,10 +92,8 @@ fn at_exposure(samples: &Samples, kind: Kind, k: f64) -> Errors {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn estimates_at_another_exposure_are_those_of_really_leaving_out() {
-    if data::folder().is_none() {
-        return;
-    }
     let samples = render(&data::classic_24());
     for kind in [Kind::Linear, Kind::Polynomial(2), Kind::Root(Order::Three)] {
         let fast = fit::plain::left_out_at_exposure(&samples, kind, 1.5).unwrap();
@@ -110,6 +106,7 @@ fn estimates_at_another_exposure_are_those_of_really_leaving_out() {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn table_2_is_reproduced() {
     const HALF: Rows = [
         DC[0],
@@ -129,9 +126,6 @@ fn table_2_is_reproduced() {
         DC[5],
         DC[6],
     ];
-    if data::folder().is_none() {
-        return;
-    }
     const SFU_HALF: Rows = [
         SFU[0],
         [2.76, 1.86, 8.14, f64::NAN],
@@ -170,10 +164,8 @@ fn table_2_is_reproduced() {
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn root_polynomials_hold_at_every_exposure_and_polynomials_do_not() {
-    if data::folder().is_none() {
-        return;
-    }
     let samples = render(&data::sfu_1995());
     let largest =
         |colours: &[Xyz]| colours.iter().flat_map(|c| [c.x.abs(), c.y.abs(), c.z.abs()]).fold(0.0, f64::max);

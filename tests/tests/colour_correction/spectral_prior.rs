@@ -166,49 +166,41 @@ fn assert_held_out(kind: Kind, chart: &[Spectrum], noise: f64, mean: f64, max: f
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_chromatic_model_is_as_good_as_it_should_be() {
-    if data::folder().is_some() {
-        assert_held_out(Kind::Chromatic, &data::classic_24(), 0.0, 0.595, 2.92);
-        assert_held_out(Kind::Chromatic, &data::sg_96(), 0.0, 0.595, 2.92);
-    }
+    assert_held_out(Kind::Chromatic, &data::classic_24(), 0.0, 0.595, 2.92);
+    assert_held_out(Kind::Chromatic, &data::sg_96(), 0.0, 0.595, 2.92);
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_chromatic_model_stands_noisy_patches() {
-    if data::folder().is_some() {
-        assert_held_out(Kind::Chromatic, &data::classic_24(), 0.03, 0.77, 3.5);
-    }
+    assert_held_out(Kind::Chromatic, &data::classic_24(), 0.03, 0.77, 3.5);
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_spectral_model_is_as_good_as_it_should_be() {
-    if data::folder().is_some() {
-        assert_held_out(Kind::Spectral, &data::classic_24(), 0.0, 0.58, 2.9);
-        assert_held_out(Kind::Spectral, &data::sg_96(), 0.0, 0.58, 2.9);
-    }
+    assert_held_out(Kind::Spectral, &data::classic_24(), 0.0, 0.58, 2.9);
+    assert_held_out(Kind::Spectral, &data::sg_96(), 0.0, 0.58, 2.9);
 }
 
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_spectral_model_stands_noisy_patches() {
-    if data::folder().is_some() {
-        assert_held_out(Kind::Spectral, &data::classic_24(), 0.03, 0.77, 3.5);
-    }
+    assert_held_out(Kind::Spectral, &data::classic_24(), 0.03, 0.77, 3.5);
 }
 
 /// Not held out: the cameras and reflectances of the built-in statistics are among those judged here.
 #[test]
+#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_statistics_in_the_program_are_as_good_as_the_spectra() {
-    if data::folder().is_some() {
-        let set = VirtualSet::builtin().unwrap();
-        let cameras = Population::builtin().unwrap();
-        let prior = |_: &str, light: &Spectrum| Prior::under(&cameras, light).unwrap();
-        for kind in [Kind::Spectral, Kind::Chromatic] {
-            let held = held_out_with(&data::classic_24(), kind, 0.0, &set, prior);
-            println!(
-                "built in, {kind}: mean {:.3} max {:.2} folds {:.3}",
-                held.mean, held.max, held.worst_folds
-            );
-            assert!(held.mean < 0.60 && held.max < 3.0 && held.worst_folds <= 0.0);
-        }
+    let set = VirtualSet::builtin().unwrap();
+    let cameras = Population::builtin().unwrap();
+    let prior = |_: &str, light: &Spectrum| Prior::under(&cameras, light).unwrap();
+    for kind in [Kind::Spectral, Kind::Chromatic] {
+        let held = held_out_with(&data::classic_24(), kind, 0.0, &set, prior);
+        println!("built in, {kind}: mean {:.3} max {:.2} folds {:.3}", held.mean, held.max, held.worst_folds);
+        assert!(held.mean < 0.60 && held.max < 3.0 && held.worst_folds <= 0.0);
     }
 }

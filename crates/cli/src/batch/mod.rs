@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
-use darkroot::batch::{
-    self, Batch as Run, Event, History, Plan, Recipes, Session, Sheet, State, Summary, estimate, find,
+use darkroot_batch::{
+    Batch as Run, BatchPlan, Event, Session, SettingsByFile, Sheet, State, Summary, estimate, find, journal,
 };
 
 pub(crate) use options::{Work, store};
@@ -78,13 +78,13 @@ impl Batch {
         for fault in &store.faults {
             shown.warn(&format!("{fault}; it is not used"));
         }
-        let mut recipes = Recipes::new(work.picture.layers()?);
+        let mut settings = SettingsByFile::new(work.picture.layers()?);
         let stop = interrupt::stop();
         let sources = find(&work.search(), &out)?;
 
         if self.dry_run {
-            let history = History::of(&out)?;
-            let plan = batch::plan_only(sources, &options, &mut recipes, &history, &store, crew)?;
+            let history = journal::read_merged(&out)?;
+            let plan = darkroot_batch::plan_only(sources, &options, &mut settings, &history, &store, crew)?;
             shown.plan(&plan, &estimate(&plan, &history, jobs))?;
             return Ok(if faults(&plan) == 0 { Outcome::Done } else { Outcome::SomeFailed });
         }
@@ -94,7 +94,7 @@ impl Batch {
                 "no raw files were found; `--include PATTERN` takes files that are not named like raw files",
             );
         }
-        batch::check(&sources, &options, &mut recipes)?;
+        darkroot_batch::check(&sources, &options, &mut settings)?;
         let mut sheet = Sheet::new(&self.report)?;
         let mut run = Run::open(&options, crew, store)?.with_thumbnails(sheet.wants_thumbnails());
         if run.history().damaged > 0 {
@@ -107,14 +107,14 @@ impl Batch {
             Some(chart) => run.session(&sources, chart, &stop, &mut |words| shown.note(words))?,
             None => Session::default(),
         };
-        let plan = run.plan(sources, &options, &mut recipes, &session, &stop)?;
+        let plan = run.plan(sources, &options, &mut settings, &session, &stop)?;
         shown.begin(&plan)?;
         let mut broken = None;
-        let mut hear = |event: Event<'_>| {
-            sheet.hear(&event);
-            broken = broken.take().or(shown.hear(&event).err());
+        let mut on_event = |event: Event<'_>| {
+            sheet.record(&event);
+            broken = broken.take().or(shown.event(&event).err());
         };
-        let summary = run.run(&plan, &stop, &mut hear)?;
+        let summary = run.run(&plan, &stop, &mut on_event)?;
         if sheet.wants_thumbnails() && !summary.interrupted {
             run.thumbnails_of_done(&plan, &stop, &mut |item, picture| sheet.picture(item, picture))?;
         }
@@ -126,12 +126,12 @@ impl Batch {
 }
 
 /// Things that went wrong with a plan before anything ran.
-fn faults(plan: &Plan) -> usize {
+fn faults(plan: &BatchPlan) -> usize {
     let conflicts = plan.items.iter().filter(|i| matches!(i.state, State::Conflict(_))).count();
     plan.faults.len() + conflicts
 }
 
-pub(crate) fn outcome(plan: &Plan, summary: &Summary) -> Outcome {
+pub(crate) fn outcome(plan: &BatchPlan, summary: &Summary) -> Outcome {
     if summary.interrupted {
         Outcome::Interrupted
     } else if summary.failed > 0 || summary.left > 0 || !plan.faults.is_empty() {

@@ -6,7 +6,9 @@ use std::time::Duration;
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
 use darkroot::ProfileStore;
-use darkroot::batch::{ChartShot, CrewOptions, OnCollision, PlanOptions, Search, Shard, names, system};
+use darkroot_batch::{
+    ChartShot, CrewOptions, OnCollision, PlanOptions, Search, Shard, Wording, Workers, names, system,
+};
 
 use crate::Common;
 use crate::picture::Picture;
@@ -155,11 +157,12 @@ impl Work {
         let program = std::env::current_exe().context("this program cannot find itself to start workers")?;
         let threads = common.threads.unwrap_or_else(system::threads).max(1);
         Ok(CrewOptions {
-            worker: (program, vec!["worker".into()]),
+            workers: Workers::Processes(program, vec!["worker".into()]),
             jobs: self.jobs.map_or(threads, usize::from),
             threads,
             memory: self.memory.unwrap_or_else(|| system::free_memory() / 2),
             timeout: self.timeout,
+            wording: Wording::new(crate::hint::words),
         })
     }
 }
@@ -192,7 +195,7 @@ pub(super) fn time(text: &str) -> Result<Duration, String> {
 }
 
 fn shard(text: &str) -> Result<Shard, String> {
-    Shard::parse(text, |name| std::env::var(name).ok())
+    Shard::parse(text, |name| std::env::var(name).ok()).map_err(|e| crate::hint::words(&e))
 }
 
 #[cfg(test)]

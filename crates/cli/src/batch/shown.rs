@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use anyhow::Result;
-use darkroot::batch::{Estimate, Event, Item, Plan, State, Summary, Why};
+use darkroot_batch::{BatchPlan, Estimate, Event, Item, State, Summary, Why};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
@@ -57,7 +57,7 @@ impl Shown {
     }
 
     /// A plan that is not run.
-    pub(crate) fn plan(&self, plan: &Plan, estimate: &Estimate) -> Result<()> {
+    pub(crate) fn plan(&self, plan: &BatchPlan, estimate: &Estimate) -> Result<()> {
         for item in &plan.items {
             self.line(&planned(item))?;
             if !self.json {
@@ -69,7 +69,7 @@ impl Shown {
                         format!("{input} -> {} ({size}, {})", output.display(), reason(*why))
                     }
                     State::Done(_) => format!("{input} -> {} (unchanged)", output.display()),
-                    State::Conflict(what) => format!("error: {what}"),
+                    State::Conflict(conflict) => format!("error: {}", crate::hint::words(conflict)),
                 };
                 writeln!(std::io::stdout(), "{words}")?;
             }
@@ -93,14 +93,14 @@ impl Shown {
         Ok(())
     }
 
-    fn faults(&self, plan: &Plan) {
+    fn faults(&self, plan: &BatchPlan) {
         for fault in &plan.faults {
             self.say(&format!("error: {fault}"));
         }
     }
 
     /// A plan is about to run.
-    pub(crate) fn begin(&mut self, plan: &Plan) -> Result<()> {
+    pub(crate) fn begin(&mut self, plan: &BatchPlan) -> Result<()> {
         self.faults(plan);
         for fault in &plan.faults {
             self.line(&json!({ "event": "fault", "error": fault }))?;
@@ -131,7 +131,7 @@ impl Shown {
     }
 
     /// Something happened to a file.
-    pub(crate) fn hear(&mut self, event: &Event<'_>) -> Result<()> {
+    pub(crate) fn event(&mut self, event: &Event<'_>) -> Result<()> {
         match event {
             Event::Begun(item) => {
                 self.line(&json!({ "event": "begun", "input": item.source.path, "output": item.output }))
@@ -158,14 +158,14 @@ impl Shown {
                 value["colours"] = (*colours).into();
                 self.line(&value)
             }
-            Event::Failed { item, error } => {
+            Event::Failed { item, words, .. } => {
                 self.failed += 1;
                 if matches!(item.state, State::Todo(_)) {
                     self.advance();
                 }
-                self.say(&format!("error: {error}"));
+                self.say(&format!("error: {words}"));
                 self.line(&json!({
-                    "event": "failed", "input": item.source.path, "output": item.output, "error": error,
+                    "event": "failed", "input": item.source.path, "output": item.output, "error": words,
                 }))
             }
             Event::Later(item) => {
@@ -195,7 +195,7 @@ impl Shown {
     }
 
     /// The run is over.
-    pub(crate) fn end(&mut self, plan: &Plan, summary: &Summary) -> Result<()> {
+    pub(crate) fn end(&mut self, plan: &BatchPlan, summary: &Summary) -> Result<()> {
         self.bar.finish_and_clear();
         let Summary { done, failed, skipped, left, interrupted, pixels, seconds, .. } = *summary;
         let mega = pixels as f64 / 1e6;
@@ -223,7 +223,7 @@ fn planned(item: &Item) -> serde_json::Value {
     let (action, why, error) = match &item.state {
         State::Todo(why) => ("develop", serde_json::to_value(why).ok(), None),
         State::Done(_) => ("unchanged", None, None),
-        State::Conflict(what) => ("conflict", None, Some(what)),
+        State::Conflict(conflict) => ("conflict", None, Some(crate::hint::words(conflict))),
     };
     json!({
         "event": "planned", "input": item.source.path, "output": item.output, "bytes": item.source.size,
@@ -247,7 +247,7 @@ fn reason(why: Why) -> &'static str {
 
 /// Bytes for people.
 pub(crate) fn megabytes(bytes: u64) -> String {
-    darkroot::batch::crew::megabytes(bytes)
+    darkroot_batch::failure::bytes_text(bytes)
 }
 
 /// Seconds for people.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use darkroot::batch::history::{History, Known};
-use darkroot::batch::journal;
+use darkroot_batch::history::{History, Known};
+use darkroot_batch::journal;
 use serde_json::json;
 
 use crate::Outcome;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use anyhow::{Error, Result};
 use clap::Args;
-use darkroot::batch::{Batch, Notice, Recipes, Stop, WatchOptions, Watched, watch};
+use darkroot_batch::{Batch, Notice, SettingsByFile, Stop, WatchOptions, Watched, watch};
 use serde_json::json;
 
 use super::options::{Work, store, time};
@@ -64,9 +64,9 @@ impl Watch {
             shown.warn(&format!("{lines} torn or damaged lines of the journal are passed over"));
         }
         // Read anew each time: files of settings may have changed.
-        let mut recipes = || work.picture.layers().map(Recipes::new);
+        let mut settings = || work.picture.layers().map(SettingsByFile::new);
         let mut told = Told { shown, common, options: &options, stop: &stop, broken: None };
-        let watched = watch(&mut batch, &options, &mut recipes, &stop, &mut |notice| told.hear(&notice))?;
+        let watched = watch(&mut batch, &options, &mut settings, &stop, &mut |notice| told.notice(&notice))?;
         told.end(&watched)?;
         Ok(match watched.stopped {
             Some(_) => Outcome::SomeFailed,
@@ -87,9 +87,9 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    fn hear(&mut self, notice: &Notice<'_>) {
-        let heard = self.try_hear(notice);
-        if let Err(error) = heard {
+    fn notice(&mut self, notice: &Notice<'_>) {
+        let result = self.try_notice(notice);
+        if let Err(error) = result {
             // Without its reader the watch ends in order.
             if self.broken.is_none() {
                 self.stop.ask();
@@ -98,7 +98,7 @@ impl Told<'_> {
         }
     }
 
-    fn try_hear(&mut self, notice: &Notice<'_>) -> Result<()> {
+    fn try_notice(&mut self, notice: &Notice<'_>) -> Result<()> {
         let shown = &mut self.shown;
         match notice {
             Notice::Watching { polling, why } => {
@@ -117,10 +117,10 @@ impl Told<'_> {
                     "polling_seconds": polling.map(|t| t.as_secs_f64()), "why": why,
                 }))
             }
-            Notice::File(event) => shown.hear(event),
-            Notice::Held { source, error } => {
-                shown.say(&format!("error: {error}"));
-                shown.line(&json!({ "event": "held", "input": source.path, "error": error }))
+            Notice::File(event) => shown.event(event),
+            Notice::Held { source, words } => {
+                shown.say(&format!("error: {words}"));
+                shown.line(&json!({ "event": "held", "input": source.path, "error": words }))
             }
             Notice::Fault(error) => {
                 shown.say(&format!("error: {error}"));

@@ -15,7 +15,8 @@ pub(crate) struct Worker {}
 impl Worker {
     pub(crate) fn run(self) -> Result<Outcome> {
         // Faults of profiles were told by the parent.
-        darkroot::batch::serve(BufReader::new(stdin()), stdout().lock(), &super::store())?;
+        let (orders, answers) = (BufReader::new(stdin()), stdout().lock());
+        darkroot_batch::serve(orders, answers, &super::store(), &crate::hint::words)?;
         Ok(Outcome::Done)
     }
 }

@@ -12,6 +12,8 @@ use std::error::Error;
 /// An error with its hint: `FILE: exists already; add `--overwrite` to replace it`.
 pub(crate) fn words(error: &(dyn Error + 'static)) -> String {
     match of(error) {
+        // Behind a list the hint has a line of its own.
+        Some(hint) if error.to_string().contains('\n') => format!("{error}\n{hint}"),
         Some(hint) => format!("{error}; {hint}"),
         None => error.to_string(),
     }

@@ -174,8 +174,9 @@ fn the_other_files_are_inspected_after_a_bad_one() {
 }
 
 #[test]
+#[cfg_attr(not(has_fixtures), ignore = "needs `fixtures` in DARKROOT_DATA")]
 fn real_raw_files_are_inspected_and_developed() {
-    let Some(folder) = real_files("fixtures") else { return };
+    let folder = real_files("fixtures");
     let desk = Desk::new();
     let files: Vec<String> = std::fs::read_dir(folder)
         .unwrap()

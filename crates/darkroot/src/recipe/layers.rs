@@ -105,7 +105,6 @@ impl Layers {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Key;
     use super::*;
     use crate::settings::Key;
 

@@ -10,8 +10,6 @@ use darkroot_colour::{RgbSpace, Vector3, Xyz, white};
 use darkroot_profile::{Errors, Kind};
 use maud::{Markup, html};
 
-pub(crate) use crate::page::base64;
-
 use crate::make_profile::{MadeLight, MadeProfile};
 use crate::page::{STYLE, page};
 use crate::shot::{Gate, Verdict};

@@ -53,12 +53,8 @@ fn schedulers_tell_the_shard() {
 
 #[cfg(unix)]
 #[test]
+#[cfg_attr(not(has_parallel), ignore = "GNU parallel is not installed")]
 fn gnu_parallel_runs_the_shards_of_the_guide() {
-    let is_there = Command::new("parallel").arg("--version").output();
-    if !is_there.is_ok_and(|o| String::from_utf8_lossy(&o.stdout).contains("GNU parallel")) {
-        eprintln!("skipped: GNU parallel is not installed");
-        return;
-    }
     let desk = desk();
     // The guide's command, with this build of the program.
     let guide =

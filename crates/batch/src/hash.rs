@@ -1,0 +1,53 @@
+//! SHA-256 of texts, files and profiles, as `sha256sum` prints it.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use darkroot_develop::OutputSpace;
+use sha2::{Digest, Sha256};
+
+use darkroot::{Engine, Error, ProfileChoice, ProfileStore, Settings, store};
+
+/// Bytes that are read at once.
+const BLOCK: usize = 1 << 20;
+
+/// Of bytes.
+pub(crate) fn bytes(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// Of a text.
+pub(crate) fn text(text: &str) -> String {
+    bytes(text.as_bytes())
+}
+
+/// Of a file's content.
+pub(crate) fn file(path: &Path) -> io::Result<String> {
+    let mut file = File::open(path)?;
+    let mut digest = Sha256::new();
+    let mut block = vec![0; BLOCK];
+    loop {
+        match file.read(&mut block)? {
+            0 => return Ok(digest.finalize().iter().map(|b| format!("{b:02x}")).collect()),
+            n => digest.update(&block[..n]),
+        }
+    }
+}
+
+/// Of the profile that gives a camera's colours under these settings; empty where none does.
+pub(crate) fn profile(
+    settings: &Settings,
+    camera: &darkroot_photo::Camera,
+    store: &ProfileStore,
+) -> Result<String, Error> {
+    if settings.space == Some(OutputSpace::Camera) || settings.engine == Engine::Imagepipe {
+        return Ok(String::new());
+    }
+    let of = |profile: &darkroot_profile::Profile| text(&darkroot_profile::file::format(profile));
+    match &settings.profile {
+        ProfileChoice::Matrix => Ok(String::new()),
+        ProfileChoice::Automatic => Ok(store.find(camera).map(|f| of(&f.profile)).unwrap_or_default()),
+        ProfileChoice::File(path) => store::read(path).map(|p| of(&p)),
+    }
+}

@@ -1,0 +1,55 @@
+//! How much memory a file takes.
+
+use darkroot_encode::Format;
+
+use darkroot::settings::Settings;
+use darkroot_develop::Bits;
+
+/// What a worker holds besides pictures: program, profiles, stacks, the tiles of one thread.
+pub(crate) const WORKER: u64 = 40 << 20;
+/// Tiles of one more thread.
+const THREAD: u64 = 12 << 20;
+
+/// Bytes that a worker holds at most while it develops a file with this many samples, stored in `stored` bytes of
+/// file. Measured for every format with the operating system's count (a test of the program holds it to that): the file and its samples, then the samples and the picture, then the picture and what its encoder keeps.
+pub(crate) fn develop(
+    file: u64,
+    samples: u64,
+    float: bool,
+    pixels: u64,
+    settings: &Settings,
+    format: Format,
+) -> u64 {
+    let bits = settings.resolve(format).map_or(Bits::Sixteen, |recipe| recipe.output.bits);
+    let picture = 3
+        * pixels
+        * match bits {
+            Bits::Eight => 1,
+            Bits::Sixteen => 2,
+            Bits::Float => 4,
+        };
+    // flashraw gives 16-bit counts; floating point is kept as such.
+    let counts = samples * if float { 4 } else { 2 };
+    let decode = file + 2 * counts;
+    let render = counts + picture;
+    let encode = picture + encoder(format, bits, picture, pixels);
+    WORKER + THREAD + decode.max(render).max(encode)
+}
+
+/// What an encoder holds beside the picture.
+fn encoder(format: Format, bits: Bits, picture: u64, pixels: u64) -> u64 {
+    match format {
+        Format::Jpeg | Format::Tiff => 4 << 20,
+        Format::Png => picture / 2,
+        Format::Webp => 5 * pixels,
+        Format::Avif => 40 * pixels,
+        Format::Exr => picture / 8,
+        Format::Jxl if bits == Bits::Eight => 6 * pixels,
+        Format::Jxl => 18 * pixels,
+    }
+}
+
+/// Bytes for looking for charts and measuring one: samples, linear light in floating point, a smaller picture.
+pub(crate) fn chart(file: u64, samples: u64, pixels: u64) -> u64 {
+    WORKER + file + 2 * samples + 4 * samples + 12 * pixels
+}

@@ -1,0 +1,45 @@
+//! Why there is no plan.
+
+use super::names::Collision;
+
+/// Why there is no plan.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// Names of outputs.
+    #[error(transparent)]
+    Naming(#[from] darkroot::NamingError),
+    /// Settings.
+    #[error(transparent)]
+    Recipe(#[from] darkroot::RecipeError),
+    /// Settings that contradict each other.
+    #[error("{input}: {source}")]
+    Settings {
+        /// The first input that they hold for.
+        input: String,
+        /// What contradicts.
+        source: darkroot::SettingsError,
+    },
+    /// Outputs with one name.
+    #[error("{}", collision_list(.0))]
+    Collisions(Vec<Collision>),
+    /// An output is an input.
+    #[error("{path}: is an input of this batch and would be overwritten by a picture")]
+    OverInput {
+        /// The file.
+        path: String,
+    },
+}
+
+fn collision_list(collisions: &[Collision]) -> String {
+    const SHOWN: usize = 20;
+    let mut text =
+        format!("several inputs would be written to one output, for {} of them:", collisions.len());
+    for c in collisions.iter().take(SHOWN) {
+        text += &format!("\n  {}: {}", c.output, c.inputs.join(", "));
+    }
+    if collisions.len() > SHOWN {
+        text += &format!("\n  and {} more", collisions.len() - SHOWN);
+    }
+    text
+}
