@@ -154,7 +154,7 @@ pub struct BatchPlan {
 fn number_text(value: f64) -> String {
     let plain = value.to_string();
     let size = value.abs();
-    if size != 0.0 && size.is_finite() && !(1e-5..1e16).contains(&size) {
+    if size != 0.0 && size.is_finite() && !(1e-4..1e16).contains(&size) {
         format!("{value:e}")
     } else if plain.contains('.') || !value.is_finite() {
         plain
@@ -174,12 +174,14 @@ mod tests {
             (2.184_920_1, "2.1849201"),
             (0.1, "0.1"),
             (0.000_01, "1e-5"),
+            (0.000_1, "0.0001"),
+            (0.000_099, "9.9e-5"),
             (0.000_012, "1.2e-5"),
             (9.9e-6, "9.9e-6"),
             (1e16, "1e16"),
             (123_456_789.0, "123456789.0"),
         ] {
-            assert_eq!(number_text(value), text);
+            assert_eq!((number_text(value), format!("{value:?}")), (text.to_owned(), text.to_owned()));
         }
     }
 

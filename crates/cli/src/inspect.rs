@@ -61,7 +61,7 @@ impl Inspect {
                     Outcome::Done
                 }
                 Err(error) => {
-                    crate::say(format_args!("error: {error}"));
+                    crate::say(format_args!("error: {}", crate::hint::words(&error)));
                     Outcome::SomeFailed
                 }
             });
@@ -81,7 +81,7 @@ impl Inspect {
                     std::io::stdout().write_all(text.as_bytes())?;
                 }
                 Err(error) => {
-                    crate::say(format_args!("error: {error}"));
+                    crate::say(format_args!("error: {}", crate::hint::words(&error)));
                     outcome = Outcome::SomeFailed;
                 }
             }

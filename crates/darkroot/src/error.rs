@@ -125,7 +125,7 @@ pub enum Error {
         camera: String,
     },
     /// The output exists.
-    #[error("{path}: exists already; add `--overwrite` to replace it, or choose another `-o`", path = path.display())]
+    #[error("{path}: exists already", path = path.display())]
     Exists {
         /// The output.
         path: PathBuf,
@@ -171,7 +171,7 @@ pub enum Error {
         path: PathBuf,
     },
     /// The second engine failed.
-    #[error("{path}: the engine imagepipe cannot develop it ({reason}); leave out `--engine`", path = path.display())]
+    #[error("{path}: the engine imagepipe cannot develop it ({reason})", path = path.display())]
     Engine {
         /// The file.
         path: PathBuf,
@@ -212,12 +212,8 @@ impl Error {
         }
         let reason = match error.kind() {
             io::ErrorKind::NotFound => "its folder does not exist; create it first".to_owned(),
-            io::ErrorKind::PermissionDenied => {
-                "permission denied; choose another folder with `-o`".to_owned()
-            }
-            io::ErrorKind::ReadOnlyFilesystem => {
-                "the disk is read-only; choose another folder with `-o`".to_owned()
-            }
+            io::ErrorKind::PermissionDenied => "permission denied; choose another folder".to_owned(),
+            io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only; choose another folder".to_owned(),
             _ => error.to_string(),
         };
         Self::Write { path: path.to_owned(), reason }

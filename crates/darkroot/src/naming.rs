@@ -47,7 +47,7 @@ pub enum NamingError {
         output: PathBuf,
     },
     /// The output is an input.
-    #[error("{path}: is a raw file of this run and would be overwritten by a picture; choose another `-o`", path = path.display())]
+    #[error("{path}: is a raw file of this run and would be overwritten by a picture", path = path.display())]
     OverInput {
         /// The file.
         path: PathBuf,
@@ -79,7 +79,7 @@ pub enum NamingError {
     },
     /// The ending names no format.
     #[error(
-        "{path}: its ending names no picture format; use .jpg .png .tif .webp .avif .exr or .jxl, or add `--format`",
+        "{path}: its ending names no picture format; use .jpg .png .tif .webp .avif .exr or .jxl",
         path = path.display()
     )]
     Format {
@@ -89,7 +89,7 @@ pub enum NamingError {
 }
 
 impl Target {
-    /// What a person means by `-o TEXT`: a template if it has braces, a folder if it is one or ends like one,
+    /// What a person means by an output: a template if it has braces, a folder if it is one or ends like one,
     /// else a file.
     pub fn parse(text: &str) -> Self {
         let path = PathBuf::from(text);

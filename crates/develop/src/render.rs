@@ -13,12 +13,10 @@ use crate::tile::tile;
 use crate::view::{Cancel, Cancelled, Scale, View};
 use crate::{correct, corrections, exposure, fringe, gamut, tone, transfer};
 
-/// Rows of the finished picture that one task makes.
+/// Rows of the sensor that one task looks at.
 const BAND_ROWS: usize = 96;
 /// Columns of a tile within a band: its planes stay in the second-level cache.
 const TILE_COLUMNS: usize = 512;
-/// The same for a picture that is made smaller, whose tiles see many more pixels of the sensor.
-const SMALL_BAND_ROWS: usize = 24;
 
 impl Plan {
     /// The whole picture at a scale.
@@ -31,8 +29,8 @@ impl Plan {
     /// # Errors
     /// Somebody cancelled it.
     pub fn render(&self, view: View, cancel: &Cancel) -> Result<Picture, Cancelled> {
-        let rows = if view.scale == Scale::FULL { BAND_ROWS } else { SMALL_BAND_ROWS };
-        self.render_in_tiles(view, cancel, TILE_COLUMNS, rows)
+        let bin = view.scale.bin();
+        self.render_in_tiles(view, cancel, TILE_COLUMNS.div_ceil(bin), BAND_ROWS.div_ceil(bin))
     }
 
     /// As [`Plan::render`], in tiles of another size. The picture is the same.
@@ -94,8 +92,8 @@ impl Plan {
     fn readers(&self, scale: Scale) -> Vec<Stage> {
         match (self.demosaic, scale) {
             (Method::None, _) => Vec::new(),
-            (method, Scale::FULL) => vec![method.stage(), debias::STAGE, fringe::STAGE],
-            _ => vec![reduce::STAGE],
+            (_, scale) if scale.bin() >= reduce::LEAST => vec![reduce::STAGE],
+            (method, _) => vec![method.stage(), debias::STAGE, fringe::STAGE],
         }
     }
 
@@ -151,10 +149,7 @@ impl Grid {
         let origin =
             (begin(x, crop.x, crop.right(), size.width), begin(y, crop.y, crop.bottom(), size.height));
         let border = tile_border(plan.changes(), &plan.readers(scale));
-        let reduction = match plan.capture.counts.layout() {
-            darkroot_photo::Layout::Cfa(cfa) if bin > 1 => Some(Reduction::new(cfa, bin)),
-            _ => None,
-        };
+        let reduction = (bin >= reduce::LEAST).then(|| Reduction::of(plan.capture.counts.layout()));
         Self { bin, origin, size, orientation, border, reduction }
     }
 
@@ -211,13 +206,14 @@ impl Render<'_> {
         let begin = (x - border as isize, y - border as isize);
         let mut mosaic = tile(&plan.capture, &plan.light, plan.multipliers, begin, size);
         highlights::treat(&mut mosaic, &plan.highlights);
-        let mut camera = if bin == 1 {
-            let mut camera = demosaic::demosaic(&mosaic, plan.demosaic, border);
-            debias::debias(&mosaic, border, &plan.noise, &mut camera);
-            fringe::cut(&mosaic, border, &plan.highlights, &mut camera);
-            camera
-        } else {
-            reduce::reduce(&mosaic, border, bin, begin, self.grid.reduction.as_ref())
+        let mut camera = match &self.grid.reduction {
+            Some(reduction) => reduction.reduce(&mosaic, border, bin, begin),
+            None => {
+                let mut camera = demosaic::demosaic(&mosaic, plan.demosaic, border);
+                debias::debias(&mosaic, border, &plan.noise, &mut camera);
+                fringe::cut(&mosaic, border, &plan.highlights, &mut camera);
+                if bin == 1 { camera } else { reduce::mean(&camera, bin) }
+            }
         };
         drop(mosaic);
         if !plan.picture_corrections.is_empty() {

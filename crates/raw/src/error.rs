@@ -27,7 +27,7 @@ pub enum Error {
     /// A compression that no decoder here reads.
     #[error(
         "is compressed with {compression}, which {decoder} cannot decode; convert it to DNG with the maker's or \
-         Adobe's converter, or take the embedded preview with `darkroot inspect --preview OUT.jpg`"
+         Adobe's converter, or take the embedded preview"
     )]
     Compression {
         /// The compression in words.
@@ -46,7 +46,7 @@ pub enum Error {
         decoder: &'static str,
     },
     /// The second decoder is known to give wrong samples for this kind of file.
-    #[error("would be decoded wrongly by rawloader ({reason}); leave out `--decoder rawloader`")]
+    #[error("would be decoded wrongly by rawloader ({reason}); take the other decoder")]
     WrongDecoder {
         /// Why.
         reason: &'static str,
@@ -58,9 +58,7 @@ pub enum Error {
         detail: String,
     },
     /// The decoder panicked; the file is most likely damaged.
-    #[error(
-        "made {decoder} fail; the file is most likely damaged: copy it again, or try the other `--decoder`"
-    )]
+    #[error("made {decoder} fail; the file is most likely damaged: copy it again, or try the other decoder")]
     DecoderFailed {
         /// The decoder that failed.
         decoder: &'static str,

@@ -13,4 +13,5 @@ mod hostile;
 mod numbers;
 mod tiles;
 mod truth;
+mod views;
 mod white_balance;

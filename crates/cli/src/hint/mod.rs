@@ -5,6 +5,7 @@
 
 mod batch;
 mod charts;
+mod core;
 pub(crate) use charts::advice;
 
 use std::error::Error;
@@ -21,5 +22,5 @@ pub(crate) fn words(error: &(dyn Error + 'static)) -> String {
 
 /// The hint for an error, where there is one.
 fn of(error: &(dyn Error + 'static)) -> Option<String> {
-    batch::hint(error).or_else(|| charts::hint(error))
+    batch::hint(error).or_else(|| charts::hint(error)).or_else(|| core::hint(error))
 }

@@ -107,7 +107,7 @@ pub enum SettingsError {
     #[error("camera RGB is for measurement: write a 32-bit .tif or an .exr file")]
     CameraNeedsFloat,
     /// Options that the second engine does not have.
-    #[error("imagepipe has its own fixed rendering in sRGB: leave out {}", settings.join(", "))]
+    #[error("imagepipe has its own fixed rendering in sRGB and does not heed {}", settings.join(", "))]
     Engine {
         /// Names of the settings that it does not heed.
         settings: Vec<&'static str>,

@@ -14,6 +14,8 @@ pub mod debias;
 mod kriging;
 pub mod lmmse;
 pub mod reduce;
+mod reduce_any;
+mod reduce_bayer;
 pub mod xtrans;
 mod xtrans_sites;
 
@@ -78,14 +80,16 @@ pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize) -> Rgb<Came
             None => bilinear::demosaic(mosaic, cfa, border, &mut picture),
         },
         (_, Layout::Cfa(cfa)) => bilinear::demosaic(mosaic, cfa, border, &mut picture),
-        (_, layout) => split(mosaic, layout.planes(), border, &mut picture),
+        (_, Layout::Rgb | Layout::Monochrome) => return split(mosaic, border),
     }
     picture
 }
 
-/// Splits pixels of one or three samples into planes.
-fn split(mosaic: &Mosaic<f32>, planes: usize, border: usize, picture: &mut Rgb<CameraSpace>) {
-    let Size { width, height } = picture.size();
+/// Splits the inner pixels, of one or three samples, into planes.
+fn split(mosaic: &Mosaic<f32>, border: usize) -> Rgb<CameraSpace> {
+    let (width, height) = (mosaic.size.width - 2 * border, mosaic.size.height - 2 * border);
+    let planes = mosaic.layout.planes();
+    let mut picture = Rgb::black(Size { width, height });
     for (c, plane) in picture.planes_mut().into_iter().enumerate() {
         for y in 0..height {
             let start = ((y + border) * mosaic.size.width + border) * planes;
@@ -95,6 +99,7 @@ fn split(mosaic: &Mosaic<f32>, planes: usize, border: usize, picture: &mut Rgb<C
             }
         }
     }
+    picture
 }
 
 /// Square root that keeps the sign.
