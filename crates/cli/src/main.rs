@@ -117,10 +117,22 @@ fn main() -> ExitCode {
     }
 }
 
-/// An error with what it comes from, and the hint of the first cause that has one.
+/// An error with what it comes from, and their hints; what a message has said already is not said again.
 fn chain(error: &anyhow::Error) -> String {
-    let causes: Vec<String> = error.chain().map(hint::words).collect();
-    causes.join(": ")
+    let mut told = String::new();
+    for cause in error.chain() {
+        let text = cause.to_string();
+        if told.is_empty() {
+            told = hint::words(cause);
+        } else if !told.contains(&text) {
+            told += ": ";
+            told += &hint::words(cause);
+        } else if let Some(hint) = hint::of(cause).filter(|hint| !told.contains(hint.as_str())) {
+            told += "; ";
+            told += &hint;
+        }
+    }
+    told
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {

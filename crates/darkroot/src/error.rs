@@ -113,14 +113,17 @@ pub enum Error {
     NoLight,
     /// The profile is for another camera.
     #[error(
-        "{path}: is a profile for {of}, but the picture was taken with {camera}; choose another profile, or add the camera to its \
-         `aliases` if they are the same", path = path.display()
+        "{path}: is a profile for {of}, but {picture} was taken with {camera}; choose another profile, or add the camera to \
+         its `aliases` if they are the same", path = path.display(),
+        picture = picture.as_deref().map_or("the picture".into(), Path::to_string_lossy)
     )]
     OtherCamera {
         /// The profile's file.
         path: PathBuf,
         /// The camera of the profile.
         of: String,
+        /// The raw file, where it has a name.
+        picture: Option<PathBuf>,
         /// The camera of the raw file.
         camera: String,
     },
@@ -181,6 +184,14 @@ pub enum Error {
 }
 
 impl Error {
+    /// The same with the picture's name, where it is about one that had none.
+    pub(crate) fn about(mut self, input: &Path) -> Self {
+        if let Self::OtherCamera { picture, .. } = &mut self {
+            *picture = Some(input.to_owned());
+        }
+        self
+    }
+
     /// A chart that cannot be used.
     pub fn chart(path: &Path, source: impl Into<ChartError>) -> Self {
         Self::Chart { path: path.to_owned(), source: source.into() }

@@ -188,7 +188,8 @@ fn own_engine(
     store: &ProfileStore,
     recipe: &Recipe,
 ) -> Result<(Picture, Report), Error> {
-    let chosen = store.for_camera(&photo.capture().camera, &settings.profile)?;
+    let chosen = store.for_camera(&photo.capture().camera, &settings.profile);
+    let chosen = chosen.map_err(|fault| fault.about(input))?;
     let profile = chosen.as_ref().map(|c| c.profile.as_ref());
     let plan = darkroot_develop::plan(&photo.analyse_as_asked(), profile, recipe)
         .map_err(|source| Error::Plan { path: input.to_owned(), source })?;

@@ -141,6 +141,7 @@ impl ProfileStore {
                     return Err(Error::OtherCamera {
                         path: path.clone(),
                         of: profile.camera().name(),
+                        picture: None,
                         camera: camera.name(),
                     });
                 }

@@ -21,6 +21,6 @@ pub(crate) fn words(error: &(dyn Error + 'static)) -> String {
 }
 
 /// The hint for an error, where there is one.
-fn of(error: &(dyn Error + 'static)) -> Option<String> {
+pub(crate) fn of(error: &(dyn Error + 'static)) -> Option<String> {
     batch::hint(error).or_else(|| charts::hint(error)).or_else(|| core::hint(error))
 }

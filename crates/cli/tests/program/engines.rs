@@ -61,12 +61,12 @@ fn the_second_engine_refuses_what_it_does_not_have() {
     let refused: [(&[&str], &str); 8] = [
         (&["--profile", "matrix"], "--profile"),
         (&["--space", "adobe-rgb"], "--space"),
-        (&["--bits", "32", "-o", "o.tif"], "--bits 32"),
-        (&["--look", "vivid"], "looks"),
-        (&["--exposure", "1"], "exposure"),
-        (&["--wb", "daylight"], "white balance"),
-        (&["--highlights", "clip"], "highlights"),
-        (&["--crop", "active"], "crop"),
+        (&["--bits", "32", "-o", "o.tif"], "--bits"),
+        (&["--look", "vivid"], "--look"),
+        (&["--exposure", "1"], "--exposure"),
+        (&["--wb", "daylight"], "--white-balance"),
+        (&["--highlights", "clip"], "--highlights"),
+        (&["--crop", "active"], "--crop"),
     ];
     for (arguments, word) in refused {
         desk.fails(

@@ -375,3 +375,22 @@ fn a_name_that_leaves_no_room_for_a_sidecar_is_a_name_like_any_other() {
     desk.put(&name, small_dng());
     desk.develop(&[&name, "-o", "o.jpg"]);
 }
+
+#[test]
+fn every_setting_is_described_and_is_an_option_with_that_default() {
+    let desk = Desk::new();
+    let run = desk.run(&["recipe", "--describe"]);
+    let settings: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    let settings = settings.as_array().unwrap();
+    let help = desk.run(&["develop", "--help"]).out;
+    let recipe = desk.run(&["recipe"]).out;
+    for setting in settings {
+        let name = setting["name"].as_str().unwrap();
+        assert!(help.contains(&format!("--{name}")), "{name} is no option");
+        assert!(recipe.contains(&format!("{name} = ")), "{name} is not in a recipe");
+        assert!(!setting["help"].as_str().unwrap().is_empty() && setting["allowed"].is_string(), "{name}");
+    }
+    let exposure = settings.iter().find(|s| s["name"] == "exposure").unwrap();
+    assert_eq!((&exposure["range"], &exposure["unit"]), (&serde_json::json!([-20.0, 20.0]), &"stops".into()));
+    assert_eq!(settings.len(), recipe.lines().filter(|l| l.contains(" = ")).count());
+}
