@@ -42,9 +42,19 @@ impl Temperature {
         };
         let ratio = (5f64.sqrt() - 1.0) / 2.0;
         let (mut low, mut high) = (MIN_MIRED, MAX_MIRED);
+        // Golden section: of the two points inside, one is inside the next bracket, too.
+        let (mut a, mut b) = (high - ratio * (high - low), low + ratio * (high - low));
+        let (mut at_a, mut at_b) = (distance(a), distance(b));
         while high - low > 1e-6 {
-            let (a, b) = (high - ratio * (high - low), low + ratio * (high - low));
-            if distance(a) < distance(b) { high = b } else { low = a }
+            if at_a < at_b {
+                (high, b, at_b) = (b, a, at_a);
+                a = high - ratio * (high - low);
+                at_a = distance(a);
+            } else {
+                (low, a, at_a) = (a, b, at_b);
+                b = low + ratio * (high - low);
+                at_b = distance(b);
+            }
         }
         let mired = (low + high) / 2.0;
         let kelvin = 1e6 / mired;

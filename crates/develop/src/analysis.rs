@@ -1,7 +1,8 @@
 //! What a capture itself tells, whatever is asked of it later: each question is answered once, when it is first asked.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use darkroot_colour::Xy;
 use darkroot_photo::Capture;
 
 use crate::light::LinearLight;
@@ -18,6 +19,8 @@ pub struct Analysis {
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
     estimated_neutral: OnceLock<Option<[f64; 3]>>,
+    /// The neutral that was last asked for, with its white.
+    last_white: Mutex<Option<([f64; 3], Xy)>>,
 }
 
 impl Analysis {
@@ -30,6 +33,7 @@ impl Analysis {
             survey: OnceLock::new(),
             noise: OnceLock::new(),
             estimated_neutral: OnceLock::new(),
+            last_white: Mutex::new(None),
         }
     }
 
@@ -63,6 +67,22 @@ impl Analysis {
     /// Camera RGB of the light's white as the picture shows it; `None` where too little of it is usable.
     pub fn estimated_neutral(&self) -> Option<[f64; 3]> {
         *self.estimated_neutral.get_or_init(|| white::estimate(self.survey(), self.matrix()))
+    }
+
+    /// Chromaticity of the white that gives a neutral, by the maker's matrices. The last one is remembered: most settings
+    /// that a person changes leave the white as it is.
+    #[expect(clippy::float_cmp, reason = "the very same neutral")]
+    pub fn white_of(&self, neutral: [f64; 3]) -> Option<Xy> {
+        let matrix = self.matrix.as_ref()?;
+        let mut last = self.last_white.lock().unwrap_or_else(PoisonError::into_inner);
+        match *last {
+            Some((known, white)) if known == neutral => Some(white),
+            _ => {
+                let white = matrix.white_of(neutral);
+                *last = Some((neutral, white));
+                Some(white)
+            }
+        }
     }
 
     /// Windows in which noise shows; none for other sensors than Bayer.

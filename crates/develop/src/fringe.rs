@@ -11,7 +11,7 @@ use std::array::from_fn;
 use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 
 use crate::demosaic::{signed_sqrt, signed_square};
-use crate::highlights::{CLIPPED, Treatment};
+use crate::highlights::{CLIPPED, Treatment, reaches};
 use crate::stage::{Stage, WhenSmaller};
 use darkroot_profile::simd::vectorised;
 
@@ -39,7 +39,7 @@ const FEW: f32 = 0.05;
 pub fn cut(mosaic: &Mosaic<f32>, border: usize, treatment: &Treatment, picture: &mut Rgb<CameraSpace>) {
     let (Treatment::Rebuild { limits, .. }, Layout::Cfa(cfa)) = (treatment, &mosaic.layout) else { return };
     let bright = limits.iter().fold(f32::MAX, |a, &b| a.min(b)) * CLIPPED;
-    if !mosaic.samples.iter().any(|&v| v >= bright) {
+    if !reaches(&mosaic.samples, bright) {
         return;
     }
     let (size, width) = (picture.size(), mosaic.size.width);

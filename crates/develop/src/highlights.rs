@@ -74,7 +74,7 @@ pub fn treat(mosaic: &mut Mosaic<f32>, treatment: &Treatment) {
 fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets: [f32; 3]) {
     let (width, height) = (mosaic.size.width, mosaic.size.height);
     let lowest = limits.iter().fold(f32::MAX, |a, &b| a.min(b)) * CLIPPED;
-    if width <= 2 * BORDER || height <= 2 * BORDER || !mosaic.samples.iter().any(|&v| v >= lowest) {
+    if width <= 2 * BORDER || height <= 2 * BORDER || !reaches(&mosaic.samples, lowest) {
         return;
     }
     // Bayer shows every colour within one pixel, larger arrays within two.
@@ -108,6 +108,13 @@ fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets
             mosaic.samples[y * width + x] = v.max(estimate + (white - estimate) * neutral);
         }
     }
+}
+
+/// Whether some sample is as bright as that.
+pub(crate) fn reaches(samples: &[f32], level: f32) -> bool {
+    // In blocks, whose brightest sample is found without a branch.
+    let brightest = |block: &[f32]| block.iter().fold(f32::MIN, |most, &v| if v > most { v } else { most });
+    samples.chunks(1024).any(|block| brightest(block) >= level)
 }
 
 /// How neutral to make a colour: 0 when some channel is far from its limit, 1 when all are clipped.

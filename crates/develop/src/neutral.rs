@@ -2,7 +2,7 @@
 
 use darkroot_colour::Xy;
 use darkroot_colour::temperature::{Temperature, daylight_xy};
-use darkroot_photo::{AsShot, Capture, Layout, Rect};
+use darkroot_photo::{AsShot, Layout, Rect};
 
 use crate::analysis::Analysis;
 use crate::error::{Error, SpotFault};
@@ -111,9 +111,9 @@ pub(crate) fn multipliers(neutral: [f64; 3]) -> [f32; 3] {
 
 /// Chromaticity of the light's white, where something tells it.
 pub(crate) fn white_of(analysis: &Analysis, neutral: [f64; 3]) -> Option<Xy> {
-    let (matrix, capture): (_, &Capture) = (analysis.matrix()?, analysis.capture());
-    Some(match (capture.balance_applied, capture.as_shot) {
-        (true, Some(AsShot::Neutral(shot))) => matrix.white_of([0, 1, 2].map(|c| neutral[c] * shot[c])),
-        _ => matrix.white_of(neutral),
+    let capture = analysis.capture();
+    analysis.white_of(match (capture.balance_applied, capture.as_shot) {
+        (true, Some(AsShot::Neutral(shot))) => [0, 1, 2].map(|c| neutral[c] * shot[c]),
+        _ => neutral,
     })
 }

@@ -47,7 +47,8 @@ impl Noise {
     /// The noise of a capture after balancing with these multipliers, from what its windows show; none where there are
     /// no windows.
     pub(crate) fn of(windows: &[Window], multipliers: [f32; 3]) -> Self {
-        let balanced: Vec<Balanced> = windows.iter().map(|w| w.balanced(multipliers)).collect();
+        let balanced: Vec<Balanced> =
+            windows.par_iter().with_min_len(4096).map(|w| w.balanced(multipliers)).collect();
         let mean =
             balanced.iter().map(|w| f64::from(w.brightness)).sum::<f64>() / balanced.len().max(1) as f64;
         if mean.is_nan() || mean <= 0.0 {
@@ -59,7 +60,7 @@ impl Noise {
             bins[bin(balanced.brightness * scale)].push((balanced.roughness, window));
         }
         let known: Vec<Option<[f32; 3]>> =
-            bins.iter_mut().map(|windows| flat(windows, multipliers)).collect();
+            bins.par_iter_mut().map(|windows| flat(windows, multipliers)).collect();
         let nearest = |i: usize| {
             let by_distance = (0..BINS).filter(|&j| known[j].is_some()).min_by_key(|&j| j.abs_diff(i));
             by_distance.and_then(|j| known[j]).unwrap_or_default()

@@ -2,6 +2,7 @@
 
 use darkroot_colour::TransferCurve;
 use darkroot_photo::{Display, Encoded, Rgb};
+use rayon::prelude::*;
 
 /// Smallest exponent of the table: below 2^-40 the curve is a straight line to 0.
 const EXPONENTS: i32 = 40;
@@ -20,7 +21,9 @@ impl Encoder {
     /// Prepares a curve.
     pub fn new(curve: TransferCurve) -> Self {
         let count = EXPONENTS as usize * SEGMENTS;
-        let knots = (0..=count)
+        let knots = (0..count + 1)
+            .into_par_iter()
+            .with_min_len(1024)
             .map(|i| {
                 let (octave, part) = (i / SEGMENTS, i % SEGMENTS);
                 let base = 2f64.powi(octave as i32 - EXPONENTS);

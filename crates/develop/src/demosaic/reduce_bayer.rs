@@ -49,13 +49,18 @@ pub(super) fn reduce(
 
 /// Sum of all samples of each square.
 fn totals(mosaic: &Mosaic<f32>, border: usize, bin: usize, size: Size, out: &mut [f32]) {
+    let width = size.width * bin;
+    let mut columns = vec![0f32; width];
     for (v, out) in out.chunks_exact_mut(size.width.max(1)).enumerate() {
-        for y in 0..bin {
-            let start = (border + v * bin + y) * mosaic.size.width + border;
-            let row = &mosaic.samples[start..start + size.width * bin];
-            for (out, samples) in out.iter_mut().zip(row.chunks_exact(bin)) {
-                *out += samples.iter().sum::<f32>();
+        columns.fill(0.0);
+        for y in border + v * bin..border + (v + 1) * bin {
+            let row = &mosaic.samples[y * mosaic.size.width + border..][..width];
+            for (sum, sample) in columns.iter_mut().zip(row) {
+                *sum += sample;
             }
+        }
+        for (out, columns) in out.iter_mut().zip(columns.chunks_exact(bin)) {
+            *out = columns.iter().sum::<f32>();
         }
     }
 }
