@@ -3,6 +3,8 @@
 //!
 //! `cargo run --release -p darkroot --example view_figures -- FILES`
 
+#![allow(clippy::print_stdout)] // Figures are what it is for.
+
 use std::error::Error;
 
 use darkroot::{Cancel, Limits, Photo, ProfileStore, Scale, Settings};
@@ -12,14 +14,9 @@ use darkroot_photo::{Picture, Samples};
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("{:<44} {:>6} {:>7} {:>7}", "file", "scale", "mean", "95 %");
-    let mut settings = Settings::default();
-    if std::env::var_os("LINEAR").is_some() {
-        settings.recipe.look = darkroot_develop::Look::Linear;
-        settings.bits = Some(darkroot_develop::Bits::Float);
-    }
     for path in std::env::args().skip(1) {
         let Ok(photo) = Photo::open(&std::fs::read(&path)?, &Limits::default()) else { continue };
-        let plan = photo.plan(&photo.analyse(), &ProfileStore::builtin(), &settings)?;
+        let plan = photo.plan(&photo.analyse(), &ProfileStore::builtin(), &Settings::default())?;
         let whole = plan.render(plan.whole(Scale::FULL), &Cancel::default())?;
         let name = path.rsplit('/').next().unwrap_or_default();
         for scale in [Scale::HALF, Scale::QUARTER] {

@@ -25,6 +25,7 @@ mod screen;
 mod tiff;
 
 mod flash;
+mod flash_facts;
 mod loader;
 
 mod exif;

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::Settings;
-use super::table::{Kind, SETTINGS, Setting};
+use super::setting::{Kind, Setting};
+use super::table::SETTINGS;
 use super::text::{self, NotAValue};
 
 /// A setting. Its name is the same on the command line and in files.

@@ -2,8 +2,11 @@
 //!
 //! [`table`] has every setting with its name, values, default and words for people; [`Settings`] is what they mean.
 
+pub mod setting;
+pub use setting::{Changes, Group, Kind, Setting, Word};
+
 pub mod table;
-pub use table::{Changes, Group, Kind, SETTINGS, Setting, Word};
+pub use table::SETTINGS;
 
 pub mod key;
 pub use key::Key;

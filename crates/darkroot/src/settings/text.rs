@@ -4,8 +4,9 @@ use darkroot_develop::{Balance, OutputSpace};
 use darkroot_raw::Decoder;
 
 use super::ProfileChoice;
+use super::setting::{Kind, Setting, Word};
 use super::spaces::{self, SPACES};
-use super::table::{AUTO, DECODERS, Kind, SWITCH, Setting, Word};
+use super::table::{AUTO, DECODERS, SWITCH};
 
 /// A text that is no value. The message says what is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
