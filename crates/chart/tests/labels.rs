@@ -1,5 +1,7 @@
 //! Photographs with charts labelled by hand, where `DARKROOT_DATA` (seen from the top of the repository) has them.
 
+#![allow(clippy::unwrap_used)] // Clippy takes the helpers of tests for production code.
+
 use std::path::PathBuf;
 
 use darkroot_chart::{ChartLayout, Options, detect};

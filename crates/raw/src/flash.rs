@@ -1,6 +1,6 @@
 //! The default decoder: flashraw.
 
-use darkroot_photo::{Camera, Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Size, Source};
+use darkroot_photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Size, Source};
 use flashraw::{
     CorruptionPolicy, DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData,
     SampleFormat, SensorLayout,
