@@ -1,8 +1,8 @@
 //! From the mosaic to a picture that is a quarter as long and as high, or less: binning instead of interpolation.
 //!
 //! A pixel of the smaller picture is the mean light of a square of the sensor. Green is told best, by most samples; red
-//! and blue are green less their difference from it, which is smooth: for Bayer arrays see [`reduce_bayer`], for others
-//! [`reduce_any`](super::reduce_any). All of it is linear in the samples: in a mean over many of them there is little
+//! and blue are green less their difference from it, which is smooth: for Bayer arrays see `reduce_bayer`, for others
+//! `reduce_any`. All of it is linear in the samples: in a mean over many of them there is little
 //! left to choose a direction for.
 
 use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb, Size};

@@ -1,5 +1,5 @@
 //! Binning under any repeating array: the best linear prediction of the mean light of a square, for each colour, from the
-//! samples in it and around it, under the models of [`kriging`](super::kriging) without a direction (block kriging; A. G.
+//! samples in it and around it, under the models of `kriging` without a direction (block kriging; A. G.
 //! Journel and C. J. Huijbregts, "Mining Geostatistics", 1978, chapter V).
 
 use darkroot_photo::{CameraSpace, Cfa, Mosaic, Rgb, Size};

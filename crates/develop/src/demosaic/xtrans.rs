@@ -1,7 +1,7 @@
 //! Demosaicing for Fujifilm X-Trans sensors: linear prediction under several models of the picture, joined by how
 //! well each predicts the samples that are there.
 //!
-//! No model of [`kriging`](super::kriging) is right everywhere, so there are eight: edges that run in four directions,
+//! No model of `kriging` is right everywhere, so there are eight: edges that run in four directions,
 //! each with colours that change along with brightness and with colours that change on their own.
 //!
 //! Which of them fits is seen from the samples themselves: each sample is predicted from those around it without
