@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use darkroot::job::develop_bytes;
+use darkroot::job::{Control, develop_bytes};
 use darkroot::recipe::Effective;
 use darkroot::{Error, Format, Job, ProfileStore, Settings};
 use darkroot_photo::{Camera, Picture};
@@ -45,13 +45,10 @@ pub(crate) fn develop(
     }
     let job = Job { input: task.input.clone(), output: task.output.clone() };
     let mut small = None;
-    let mut seen = |_: &Camera, picture: &Picture| {
-        if task.thumbnail {
-            small = thumbnail::of_picture(picture);
-        }
-    };
+    let mut seen = |picture: &Picture| small = thumbnail::of_picture(picture);
+    let control = Control { seen: task.thumbnail.then_some(&mut seen), ..Control::default() };
     // The bytes whose hash is recorded are the ones that are decoded.
-    let report = develop_bytes(&job, || Ok(bytes), &settings, store, &|_| {}, &mut seen)?;
+    let report = develop_bytes(&job, || Ok(bytes), &settings, store, control)?;
     let profile = hash::profile(&settings, camera, store)?;
     let written = written(&task.output).map_err(|e| Error::read(&task.output, &e))?;
     let mut notes = report.notes;

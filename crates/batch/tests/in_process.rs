@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use darkroot::recipe::{Layer, Layers};
-use darkroot::{Job, ProfileStore, Settings};
+use darkroot::{Control, Job, ProfileStore, Settings};
 use darkroot_batch::{
     Batch, CrewOptions, Event, PlanOptions, Search, Session, SettingsByFile, Stop, Summary, Wording, find,
 };
@@ -62,7 +62,7 @@ fn pictures_are_those_of_developing_each_file_alone() {
         let alone = desk.path().join("alone.jpg");
         let job = Job { input: input.join(raw), output: alone.clone() };
         let settings = Settings { overwrite: true, ..Settings::default() };
-        darkroot::develop(&job, &settings, &ProfileStore::builtin(), None).unwrap();
+        darkroot::develop(&job, &settings, &ProfileStore::builtin(), Control::default()).unwrap();
         assert!(std::fs::read(&alone).unwrap() == std::fs::read(out.join(picture)).unwrap(), "{picture}");
     }
     // The same journal: what is done is done.

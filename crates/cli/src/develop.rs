@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Args;
-use darkroot::{Job, ProfileStore, Report, Target, plan_outputs};
+use darkroot::{Control, Job, ProfileStore, Report, Target, plan_outputs};
 
 use crate::hint;
 use crate::picture::{Order, Picture, source_paths, sources};
@@ -66,7 +66,10 @@ impl Develop {
             progress.begin(number, job);
             let mut settings = order.settings.clone();
             settings.overwrite = self.overwrite;
-            let mut result = darkroot::develop(job, &settings, &store, Some(&|step| progress.step(step)));
+            let mut result = {
+                let step = |step| progress.step(step);
+                darkroot::develop(job, &settings, &store, Control { step: Some(&step), ..Control::default() })
+            };
             match &mut result {
                 Ok(report) => {
                     report.notes.extend(order.notes.iter().cloned());

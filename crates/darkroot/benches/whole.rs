@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use darkroot::{Engine, Job, ProfileStore, Settings};
+use darkroot::{Control, Engine, Job, ProfileStore, Settings};
 use darkroot_photo::Size;
 use darkroot_simulate::{Camera, Scene, dng, expose, nef, samples};
 
@@ -17,7 +17,8 @@ const SIZE: Size = Size { width: 3000, height: 2000 };
 fn develop(input: &Path, output: &Path, engine: Engine) {
     let settings = Settings { engine, overwrite: true, ..Settings::default() };
     let job = Job { input: input.to_owned(), output: output.to_owned() };
-    darkroot::develop(&job, &settings, &ProfileStore::builtin(), None).expect("a sound raw file");
+    darkroot::develop(&job, &settings, &ProfileStore::builtin(), Control::default())
+        .expect("a sound raw file");
 }
 
 fn whole(c: &mut Criterion) {

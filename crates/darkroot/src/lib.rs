@@ -1,12 +1,12 @@
 //! Files in, files out: what the program `darkroot` does, for other programs.
 //!
 //! ```no_run
-//! use darkroot::{Job, ProfileStore, Settings};
+//! use darkroot::{Control, Job, ProfileStore, Settings};
 //!
 //! let settings = Settings::default();
 //! let store = ProfileStore::builtin();
 //! let job = Job { input: "DSC_0001.NEF".into(), output: "DSC_0001.jpg".into() };
-//! let report = darkroot::develop(&job, &settings, &store, None)?;
+//! let report = darkroot::develop(&job, &settings, &store, Control::default())?;
 //! println!("{} developed with {}", report.camera, report.colours);
 //! # Ok::<(), darkroot::Error>(())
 //! ```
@@ -30,7 +30,7 @@ pub mod naming;
 pub use naming::{Job, NamingError, Target, plan_outputs};
 
 pub mod job;
-pub use job::{Report, Step, develop, encode_picture};
+pub use job::{Control, Report, Step, develop, encode_picture};
 
 pub mod inspect;
 pub use inspect::{Inspection, inspect, save_preview};

@@ -17,7 +17,9 @@ use darkroot_develop::transfer::Encoder;
 use darkroot_develop::{
     Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer,
 };
-use darkroot_photo::{BlackLevel, CameraSpace, Capture, Cfa, Counts, Layout, Mosaic, Rgb, Size, WhiteLevel};
+use darkroot_photo::{
+    BlackLevel, CameraSpace, Capture, Cfa, Counts, Display, Layout, Mosaic, Rgb, Size, WhiteLevel,
+};
 use darkroot_profile::{Order, PlaneModel, RootPolynomial};
 
 const SIZE: Size = Size { width: 1024, height: 512 };
@@ -99,7 +101,10 @@ fn stages(c: &mut Criterion) {
     ] {
         let mosaic = mosaic(letters);
         let Some(method) = Method::of(&mosaic.layout, wanted) else { continue };
-        group.bench_function(name, |b| b.iter(|| demosaic::demosaic(black_box(&mosaic), method, BORDER)));
+        let mut picture = Rgb::black(SIZE);
+        group.bench_function(name, |b| {
+            b.iter(|| demosaic::demosaic(black_box(&mosaic), method, BORDER, &mut picture));
+        });
     }
     for order in [Order::One, Order::Two, Order::Three, Order::Four] {
         let model = model(order);
@@ -120,8 +125,13 @@ fn stages(c: &mut Criterion) {
         b.iter_batched(planes, |p| gamut::fit(p, &primaries), BatchSize::LargeInput);
     });
     let encoder = Encoder::new(TransferCurve::Srgb);
-    group.bench_function("transfer", |b| {
-        b.iter_batched(planes, |p| transfer::encode(p, &encoder), BatchSize::LargeInput);
+    let display = planes::<Display>();
+    let (mut eight, mut sixteen) = (vec![0u8; 3 * SIZE.area()], vec![0u16; 3 * SIZE.area()]);
+    group.bench_function("transfer, 8 bits", |b| {
+        b.iter(|| transfer::encode(display.planes(), &encoder, black_box(&mut eight)));
+    });
+    group.bench_function("transfer, 16 bits", |b| {
+        b.iter(|| transfer::encode(display.planes(), &encoder, black_box(&mut sixteen)));
     });
     group.finish();
 }

@@ -47,22 +47,31 @@ pub fn cut(mosaic: &Mosaic<f32>, border: usize, treatment: &Treatment, picture: 
     let seen = spread(&kinds, width);
     let [red, green, blue] = picture.planes_mut();
     for y in 0..size.height {
-        for x in 0..size.width {
-            let centre = (y + border) * width + x + border;
-            if seen[centre] & EVERYTHING != EVERYTHING {
-                continue;
-            }
-            let Some((around, weight)) = around(mosaic, &kinds, centre) else { continue };
-            let i = y * size.width + x;
-            let (least, most) = greens(mosaic, &kinds, centre);
-            green[i] += (green[i].clamp(least, most) - green[i]) * weight;
-            let neutral = green[i].max(0.0);
-            for (c, v) in [(0, &mut red[i]), (2, &mut blue[i])] {
-                let tinted = neutral * around[c] / around[1];
-                *v += (v.clamp(neutral.min(tinted), neutral.max(tinted)) - *v) * weight;
+        let places = (y + border) * width + border..(y + border) * width + border + size.width;
+        for run in seen[places.clone()].chunks(RUN).enumerate().filter(|(_, run)| shows_everything(run)) {
+            let first = run.0 * RUN;
+            for (x, _) in (first..).zip(run.1).filter(|(_, seen)| *seen & EVERYTHING == EVERYTHING) {
+                let centre = places.start + x;
+                let Some((around, weight)) = around(mosaic, &kinds, centre) else { continue };
+                let i = y * size.width + x;
+                let (least, most) = greens(mosaic, &kinds, centre);
+                green[i] += (green[i].clamp(least, most) - green[i]) * weight;
+                let neutral = green[i].max(0.0);
+                for (c, v) in [(0, &mut red[i]), (2, &mut blue[i])] {
+                    let tinted = neutral * around[c] / around[1];
+                    *v += (v.clamp(neutral.min(tinted), neutral.max(tinted)) - *v) * weight;
+                }
             }
         }
     }
+}
+
+/// Pixels that are looked at together: only a few have everything around them.
+const RUN: usize = 64;
+
+/// Whether some pixel of a run has bright and dark samples of every channel around it.
+fn shows_everything(seen: &[u8]) -> bool {
+    seen.iter().fold(false, |found, seen| found | (seen & EVERYTHING == EVERYTHING))
 }
 
 /// Bright and dark samples of each channel.
@@ -72,14 +81,25 @@ const EVERYTHING: u8 = BRIGHT_KINDS | DARK_KINDS;
 
 /// The kind of each sample: bit c for a bright one of channel c, bit 3 + c for a dark one, c itself in the last two.
 fn kinds(mosaic: &Mosaic<f32>, cfa: &Cfa, bright: f32) -> Vec<u8> {
+    let width = mosaic.size.width;
     let mut kinds = vec![0u8; mosaic.samples.len()];
-    let rows = mosaic.samples.chunks_exact(mosaic.size.width);
-    for (y, (row, out)) in rows.zip(kinds.chunks_exact_mut(mosaic.size.width)).enumerate() {
-        let channels: Vec<u8> = (0..cfa.width()).map(|x| cfa.at(x, y).plane().unwrap_or(1) as u8).collect();
-        for ((out, &v), c) in out.iter_mut().zip(row).zip(channels.iter().cycle()) {
-            *out = c << 6 | u8::from(v >= bright) << c | u8::from(v < DARK * bright) << (3 + c);
-        }
-    }
+    // The channel of each sample of a row, for each row of the array.
+    let channels = |y: usize| (0..width).map(|x| cfa.at(x, y).plane().unwrap_or(1) as u8).collect();
+    let channels: Vec<Vec<u8>> = (0..cfa.height()).map(channels).collect();
+    vectorised(
+        #[inline(always)]
+        || {
+            let rows = mosaic.samples.chunks_exact(width).zip(kinds.chunks_exact_mut(width));
+            for ((row, out), channels) in rows.zip(channels.iter().cycle()) {
+                for ((out, &v), &c) in out.iter_mut().zip(row).zip(channels) {
+                    let bit = 1 << c;
+                    let is_bright = if v >= bright { bit } else { 0 };
+                    let is_dark = if v < DARK * bright { bit << 3 } else { 0 };
+                    *out = c << 6 | is_bright | is_dark;
+                }
+            }
+        },
+    );
     kinds
 }
 

@@ -22,6 +22,8 @@ pub const STAGE: Stage = Stage { name: "highlights", border: BORDER, when_smalle
 
 /// Share of the clipping level at which a sample counts as clipped: noise makes saturated samples scatter.
 pub const CLIPPED: f32 = 0.985;
+/// Samples that are looked at together, as most of them are not clipped.
+const RUN: usize = 64;
 /// Share of the clipping level at which a fully clipped colour begins to be made neutral.
 const NEARLY: f32 = 0.9;
 
@@ -73,48 +75,91 @@ pub fn treat(mosaic: &mut Mosaic<f32>, treatment: &Treatment) {
 
 fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets: [f32; 3]) {
     let (width, height) = (mosaic.size.width, mosaic.size.height);
-    let lowest = limits.iter().fold(f32::MAX, |a, &b| a.min(b)) * CLIPPED;
+    let clipped = limits.map(|l| l * CLIPPED);
+    let lowest = clipped.iter().fold(f32::MAX, |a, &b| a.min(b));
     if width <= 2 * BORDER || height <= 2 * BORDER || !reaches(&mosaic.samples, lowest) {
         return;
     }
-    // Bayer shows every colour within one pixel, larger arrays within two.
-    let reach = if cfa.width() <= 2 { 1 } else { BORDER };
+    let surroundings = surroundings(cfa, width);
     let plane = |x: usize, y: usize| cfa.at(x, y).plane().unwrap_or(1);
     let scale = limits.map(|l| 1.0 / l);
-    let seen = mosaic.samples.clone();
+    // Places and values of what was rebuilt: nothing is to be estimated from estimates.
+    let mut rebuilt: Vec<(usize, f32)> = Vec::new();
     for y in BORDER..height - BORDER {
-        for x in BORDER..width - BORDER {
-            let own = plane(x, y);
-            let v = seen[y * width + x];
-            if v < CLIPPED * limits[own] {
+        let planes: Vec<usize> = (0..cfa.width()).map(|x| plane(x, y)).collect();
+        for first in (BORDER..width - BORDER).step_by(RUN) {
+            let run = first..(first + RUN).min(width - BORDER);
+            if !reaches(&mosaic.samples[y * width + run.start..y * width + run.end], lowest) {
                 continue;
             }
-            let (mut sums, mut weights) = ([0f32; 3], [0f32; 3]);
-            for v in y - reach..=y + reach {
-                for u in x - reach..=x + reach {
-                    let (c, light) = (plane(u, v), seen[v * width + u].max(0.0));
+            for x in run {
+                let place = x % cfa.width();
+                let (own, centre) = (planes[place], y * width + x);
+                let v = mosaic.samples[centre];
+                if v < clipped[own] {
+                    continue;
+                }
+                let around = &surroundings[y % cfa.height() * cfa.width() + place];
+                let (mut sums, mut weights) = ([0f32; 3], [0f32; 3]);
+                for &(c, offset) in around {
+                    let light = mosaic.samples[centre.wrapping_add_signed(offset)].max(0.0);
                     // Fourth power (a Lehmer mean): of a reflex and its dark surroundings only the reflex counts.
                     let weight = light * light * light * light;
                     sums[c] += weight * light;
                     weights[c] += weight;
                 }
+                let mut around: [f32; 3] = from_fn(|c| sums[c] / weights[c].max(f32::MIN_POSITIVE));
+                around[own] = v;
+                let others = (around[(own + 1) % 3] + around[(own + 2) % 3]) / 2.0;
+                let white = around.iter().fold(v, |a, &b| a.max(b));
+                let neutral = neutrality(around, scale);
+                let estimate = others + offsets[own];
+                rebuilt.push((centre, v.max(estimate + (white - estimate) * neutral)));
             }
-            let mut around: [f32; 3] = from_fn(|c| sums[c] / weights[c].max(f32::MIN_POSITIVE));
-            around[own] = v;
-            let others = (around[(own + 1) % 3] + around[(own + 2) % 3]) / 2.0;
-            let white = around.iter().fold(v, |a, &b| a.max(b));
-            let neutral = neutrality(around, scale);
-            let estimate = others + offsets[own];
-            mosaic.samples[y * width + x] = v.max(estimate + (white - estimate) * neutral);
         }
     }
+    for (place, v) in rebuilt {
+        mosaic.samples[place] = v;
+    }
+}
+
+/// For each place of the array: the channels of the samples around it, and how far from it they are stored.
+fn surroundings(cfa: &Cfa, width: usize) -> Vec<Vec<(usize, isize)>> {
+    // Bayer shows every colour within one pixel, larger arrays within two.
+    let reach = if cfa.width() <= 2 { 1 } else { BORDER } as isize;
+    // Whole periods are added so that places left of and above the first one count from 0.
+    let (px, py) = ((cfa.width() * BORDER) as isize, (cfa.height() * BORDER) as isize);
+    let at = |x: isize, y: isize| cfa.at((x + px) as usize, (y + py) as usize).plane().unwrap_or(1);
+    let places = (0..cfa.height() as isize).flat_map(|y| (0..cfa.width() as isize).map(move |x| (x, y)));
+    let around = |(x, y): (isize, isize)| {
+        let offsets = (-reach..=reach).flat_map(|v| (-reach..=reach).map(move |u| (u, v)));
+        offsets.map(|(u, v)| (at(x + u, y + v), v * width as isize + u)).collect()
+    };
+    places.map(around).collect()
 }
 
 /// Whether some sample is as bright as that.
 pub(crate) fn reaches(samples: &[f32], level: f32) -> bool {
     // In blocks, whose brightest sample is found without a branch.
-    let brightest = |block: &[f32]| block.iter().fold(f32::MIN, |most, &v| if v > most { v } else { most });
-    samples.chunks(1024).any(|block| brightest(block) >= level)
+    const LANES: usize = 32;
+    let mut found = false;
+    vectorised(
+        #[inline(always)]
+        || {
+            found = samples.chunks(1024).any(|block| {
+                let lanes = block.chunks_exact(LANES);
+                let mut most = [f32::MIN; LANES];
+                let rest = lanes.remainder().iter().any(|v| *v >= level);
+                for lane in lanes {
+                    for (most, &v) in most.iter_mut().zip(lane) {
+                        *most = if v > *most { v } else { *most };
+                    }
+                }
+                rest || most.iter().any(|v| *v >= level)
+            });
+        },
+    );
+    found
 }
 
 /// How neutral to make a colour: 0 when some channel is far from its limit, 1 when all are clipped.

@@ -49,6 +49,9 @@ pub mod white;
 pub use white::CameraMatrix;
 
 mod auto_exposure;
+mod finish;
+mod grid;
+mod in_turn;
 mod neutral;
 mod render;
 mod tile;

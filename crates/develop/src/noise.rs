@@ -3,7 +3,8 @@
 //! The variance is that of the square roots of balanced samples, the domain of demosaicing. Shot noise is even
 //! there (Anscombe, Biometrika 35, 1948); read noise lets it rise in the shadows.
 
-use darkroot_photo::{Capture, Cfa, Filter, Layout};
+use darkroot_photo::{Capture, Cfa, Layout};
+use darkroot_profile::simd::vectorised;
 use rayon::prelude::*;
 
 use crate::demosaic::{signed_sqrt, signed_square};
@@ -140,53 +141,108 @@ pub(crate) fn windows(capture: &Capture, linear: &LinearLight) -> Vec<Window> {
     let (columns, rows) = (area.width / WINDOW, area.height / WINDOW);
     let step = (columns * rows).div_ceil(MOST_WINDOWS).max(1);
     let rows: Vec<usize> = (0..rows).step_by(step).collect();
-    rows.par_iter()
-        .flat_map_iter(|row| {
-            let top = area.y + row * WINDOW;
-            let width = columns * WINDOW;
-            let mut strip = vec![0f32; width * WINDOW];
-            for (i, light) in strip.chunks_exact_mut(width).enumerate() {
-                linear.row(&capture.counts, area.x, top + i, light);
-            }
-            let window = |i: usize| window(&strip, width, i * WINDOW, cfa, (area.x, top));
-            (0..columns).map(window).collect::<Vec<_>>()
-        })
-        .collect()
+    let of_row = |&row: &usize| strip(capture, linear, cfa, area.y + row * WINDOW);
+    rows.par_iter().flat_map_iter(of_row).collect()
 }
 
-/// Light and variances of the window that begins in column `left` of a strip.
-fn window(strip: &[f32], width: usize, left: usize, cfa: &Cfa, (x0, y0): (usize, usize)) -> Window {
-    let (mut light, mut roots, mut counts) = ([0f32; 3], [0f32; 3], [0f32; 3]);
-    let (mut bend_x, mut bend_y, mut bends) = ([0f32; 3], [0f32; 3], [0f32; 3]);
-    let root = |x: usize, y: usize| signed_sqrt(strip[y * width + left + x]);
+/// Rows and columns of a window that have neighbours of their colour on both sides inside it.
+const MIDDLE: std::ops::Range<usize> = 2..WINDOW - 2;
+
+/// The windows of one row of them, which begins at row `top` of the frame.
+fn strip(capture: &Capture, linear: &LinearLight, cfa: &Cfa, top: usize) -> Vec<Window> {
+    let area = capture.active_area;
+    let width = area.width / WINDOW * WINDOW;
+    let mut light = vec![0f32; width * WINDOW];
+    let mut roots = vec![0f32; width * WINDOW];
+    for (i, light) in light.chunks_exact_mut(width).enumerate() {
+        linear.row(&capture.counts, area.x, top + i, light);
+    }
+    vectorised(
+        #[inline(always)]
+        || {
+            for (root, &v) in roots.iter_mut().zip(&light) {
+                *root = signed_sqrt(v);
+            }
+        },
+    );
+    let mut tallies = vec![Tally::default(); width / WINDOW];
+    let mut bends = vec![(0f32, 0f32); width];
     for y in 0..WINDOW {
-        for x in 0..WINDOW {
-            let v = strip[y * width + left + x];
-            let c = match cfa.at(x0 + left + x, y0 + y) {
-                Filter::Red => 0,
-                Filter::Blue => 2,
-                _ => 1,
-            };
-            light[c] += v;
-            roots[c] += signed_sqrt(v);
-            counts[c] += 1.0;
-            // Second differences between samples of one colour: shading does not show in them.
-            if (2..WINDOW - 2).contains(&x) && (2..WINDOW - 2).contains(&y) {
-                bend_x[c] += (root(x - 2, y) - 2.0 * root(x, y) + root(x + 2, y)).powi(2);
-                bend_y[c] += (root(x, y - 2) - 2.0 * root(x, y) + root(x, y + 2)).powi(2);
-                bends[c] += 6.0;
+        let row = |y: usize| y * width..(y + 1) * width;
+        let (light, here) = (&light[row(y)], &roots[row(y)]);
+        let is_middle = MIDDLE.contains(&y);
+        if is_middle {
+            let (above, below) = (&roots[row(y - 2)], &roots[row(y + 2)]);
+            second_differences(here, above, below, &mut bends);
+        }
+        let colours = [0, 1].map(|x| cfa.at(area.x + x, top + y).plane().unwrap_or(1));
+        for (i, tally) in tallies.iter_mut().enumerate() {
+            let window = i * WINDOW..(i + 1) * WINDOW;
+            tally.add(colours, &light[window.clone()], &here[window.clone()]);
+            if is_middle {
+                tally.add_bends(colours, &bends[window]);
             }
         }
     }
-    let spread = |c: usize| {
-        let n = counts[c];
-        (light[c] / n - signed_square(roots[c] / n)) * (n / (n - 1.0))
-    };
-    Window {
-        light,
-        spread: [spread(0), spread(1), spread(2)],
-        bend_x: [0, 1, 2].map(|c| bend_x[c] / bends[c]),
-        bend_y: [0, 1, 2].map(|c| bend_y[c] / bends[c]),
+    tallies.iter().map(Tally::window).collect()
+}
+
+/// Squares of the second differences between samples of one colour, along the row and along the columns: shading does
+/// not show in them.
+fn second_differences(here: &[f32], above: &[f32], below: &[f32], out: &mut [(f32, f32)]) {
+    let inner = 2..here.len() - 2;
+    let (above, below) = (&above[inner.clone()], &below[inner.clone()]);
+    for (i, ((out, above), below)) in out[inner].iter_mut().zip(above).zip(below).enumerate() {
+        let own = 2.0 * here[i + 2];
+        let (along, down) = (here[i] - own + here[i + 4], above - own + below);
+        *out = (along * along, down * down);
+    }
+}
+
+/// Sums over a window, by channel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    light: [f32; 3],
+    roots: [f32; 3],
+    counts: [f32; 3],
+    bend_x: [f32; 3],
+    bend_y: [f32; 3],
+    bends: [f32; 3],
+}
+
+impl Tally {
+    /// Adds a row, whose columns have these two colours in turn.
+    fn add(&mut self, colours: [usize; 2], light: &[f32], roots: &[f32]) {
+        for (parity, c) in colours.into_iter().enumerate() {
+            let every_second = |values: &[f32]| values[parity..].iter().step_by(2).sum::<f32>();
+            self.light[c] += every_second(light);
+            self.roots[c] += every_second(roots);
+            self.counts[c] += (WINDOW / 2) as f32;
+        }
+    }
+
+    /// Adds the squares of second differences of a row.
+    fn add_bends(&mut self, colours: [usize; 2], bends: &[(f32, f32)]) {
+        for (x, bend) in bends.iter().enumerate().take(MIDDLE.end).skip(MIDDLE.start) {
+            let c = colours[x % 2];
+            self.bend_x[c] += bend.0;
+            self.bend_y[c] += bend.1;
+            // A second difference has 1 + 4 + 1 times the variance of a sample.
+            self.bends[c] += 6.0;
+        }
+    }
+
+    fn window(&self) -> Window {
+        let spread = |c: usize| {
+            let n = self.counts[c];
+            (self.light[c] / n - signed_square(self.roots[c] / n)) * (n / (n - 1.0))
+        };
+        Window {
+            light: self.light,
+            spread: [spread(0), spread(1), spread(2)],
+            bend_x: [0, 1, 2].map(|c| self.bend_x[c] / self.bends[c]),
+            bend_y: [0, 1, 2].map(|c| self.bend_y[c] / self.bends[c]),
+        }
     }
 }
 

@@ -142,3 +142,14 @@ pub enum Bits {
     /// 32-bit floating point, not cut at black and white.
     Float,
 }
+
+impl Bits {
+    /// 8, 16 or 32.
+    pub fn count(self) -> u8 {
+        match self {
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+            Self::Float => 32,
+        }
+    }
+}

@@ -7,6 +7,7 @@
 use darkroot_photo::Capture;
 use rayon::prelude::*;
 
+use crate::highlights::reaches;
 use crate::light::{LinearLight, channels};
 
 /// Light below this share of the white level is never taken for clipped.
@@ -15,6 +16,9 @@ const LOWEST: f32 = 0.8;
 const BIN: f32 = 0.001;
 /// Bins from `LOWEST` to a little above the white level.
 const BINS: usize = 256;
+
+/// Samples that are looked at together.
+const RUN: usize = 128;
 
 /// A heap this close to the white level is at the white level.
 const SAME: f32 = 0.995;
@@ -40,11 +44,15 @@ impl BrightSamples {
 
     /// Counts levelled samples of a row, whose channels repeat.
     pub(crate) fn count(&mut self, light: &[f32], channels: &[usize]) {
-        for (&v, &channel) in light.iter().zip(channels.iter().cycle()) {
-            if v >= LOWEST
-                && let Some(bins) = self.0.get_mut(channel)
-            {
-                bins[(((v - LOWEST) / BIN) as usize).min(BINS - 1)] += 1;
+        // In runs, most of which hold no bright sample.
+        let run = RUN.next_multiple_of(channels.len());
+        for light in light.chunks(run).filter(|light| reaches(light, LOWEST)) {
+            for (&v, &channel) in light.iter().zip(channels.iter().cycle()) {
+                if v >= LOWEST
+                    && let Some(bins) = self.0.get_mut(channel)
+                {
+                    bins[(((v - LOWEST) / BIN) as usize).min(BINS - 1)] += 1;
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! One look at the whole frame: mean light of small blocks, where channels clip, and which blocks are clipped.
 
 use darkroot_photo::{Capture, Rect};
+use darkroot_profile::simd::vectorised;
 use rayon::prelude::*;
 
 use crate::highlights::CLIPPED;
@@ -105,31 +106,45 @@ fn strip(capture: &Capture, linear: &LinearLight, place: Rect, side: usize, colu
     let layout = capture.counts.layout();
     let planes = layout.planes();
     let mut bright = BrightSamples::none();
-    // A fourth channel takes the samples under filters of other colours.
-    let mut sums = vec![[0f32; 4]; columns];
-    let mut most = vec![[f32::MIN; 4]; columns];
-    let mut numbers = [0f32; 4];
     let mut light = vec![0f32; place.width * planes];
-    for y in place.y..place.bottom() {
+    // Sums and brightest samples of columns, apart for each row of the filter array.
+    let rows = period(layout).1;
+    let mut of_columns = vec![(vec![0f32; light.len()], vec![f32::MIN; light.len()]); rows];
+    for (i, y) in (place.y..place.bottom()).enumerate() {
         linear.levelled(&capture.counts, place.x, y, &mut light);
-        let of_row = channels(layout, place.x, y, NO_CHANNEL);
-        bright.count(&light, &of_row);
+        bright.count(&light, &channels(layout, place.x, y, NO_CHANNEL));
         linear.correct(place.x, y, &mut light);
+        let (sums, most) = &mut of_columns[i % rows];
+        vectorised(
+            #[inline(always)]
+            || {
+                for ((&v, sum), most) in light.iter().zip(sums.iter_mut()).zip(most.iter_mut()) {
+                    *sum += v;
+                    *most = if v > *most { v } else { *most };
+                }
+            },
+        );
+    }
+    // A fourth channel takes the samples under filters of other colours.
+    let mut blocks = vec![([0f32; 4], [f32::MIN; 4]); columns];
+    let mut numbers = [0f32; 4];
+    for (i, (sums, most)) in of_columns.iter().enumerate() {
+        let of_row = channels(layout, place.x, place.y + i, NO_CHANNEL);
         let of_block: Vec<usize> = of_row.iter().copied().cycle().take(side * planes).collect();
         for &c in &of_block {
-            numbers[c] += 1.0;
+            numbers[c] += (place.height - i.min(place.height)).div_ceil(rows) as f32;
         }
-        let blocks = light.chunks_exact(side * planes).zip(sums.iter_mut().zip(&mut most));
-        for (samples, (sums, most)) in blocks {
-            for (&v, &c) in samples.iter().zip(&of_block) {
-                sums[c] += v;
-                most[c] = most[c].max(v);
+        let (sums, most) = (sums.chunks_exact(side * planes), most.chunks_exact(side * planes));
+        for ((sums, most), block) in sums.zip(most).zip(&mut blocks) {
+            for ((sum, most), &c) in sums.iter().zip(most).zip(&of_block) {
+                block.0[c] += sum;
+                block.1[c] = block.1[c].max(*most);
             }
         }
     }
     // The one sample of a monochrome pixel stands for all three channels.
     let source = if planes == 1 && numbers[1] + numbers[2] + numbers[3] < 0.5 { [0; 3] } else { [0, 1, 2] };
-    let blocks = sums.iter().zip(&most).map(|(sums, most)| Seen {
+    let blocks = blocks.iter().map(|(sums, most)| Seen {
         mean: source.map(|c| sums[c] / numbers[c].max(1.0)),
         most: source.map(|c| most[c]),
     });

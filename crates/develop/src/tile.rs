@@ -8,29 +8,31 @@ use darkroot_photo::{Capture, Mosaic, Size};
 use crate::balance;
 use crate::light::{LinearLight, layout_from, period};
 
-/// Linear, corrected, balanced samples of a rectangle whose top left corner lies in column `x` of row `y` of the frame;
-/// it may reach beyond the active area on all sides.
+/// Makes `tile` the linear, corrected, balanced samples of a rectangle whose top left corner lies in column `x` of row `y`
+/// of the frame; it may reach beyond the active area on all sides.
 pub(crate) fn tile(
     capture: &Capture,
     linear: &LinearLight,
     multipliers: [f32; 3],
     (x, y): (isize, isize),
     size: Size,
-) -> Mosaic<f32> {
+    tile: &mut Mosaic<f32>,
+) {
     let area = capture.active_area;
     let stored = capture.counts.layout();
     let (planes, period) = (stored.planes(), period(stored));
-    let layout = layout_from(stored, x, y);
+    tile.layout = layout_from(stored, x, y);
+    tile.size = size;
+    tile.samples.resize(size.area() * planes, 0.0);
     let columns: Vec<usize> =
         (0..size.width).map(|i| inside(x + i as isize, area.x, area.width, period.0)).collect();
     let (Some(&first), Some(&last)) = (columns.iter().min(), columns.iter().max()) else {
-        return Mosaic { size, layout, samples: Vec::new() };
+        return;
     };
     // Columns that stand in the tile as they stand in the frame.
     let straight = columns.windows(2).all(|w| w[1] == w[0] + 1);
-    let mut samples = vec![0f32; size.area() * planes];
-    let mut light = vec![0f32; (last - first + 1) * planes];
-    for (i, out) in samples.chunks_exact_mut(size.width * planes).enumerate() {
+    let mut light = vec![0f32; if straight { 0 } else { (last - first + 1) * planes }];
+    for (i, out) in tile.samples.chunks_exact_mut(size.width * planes).enumerate() {
         let y = inside(y + i as isize, area.y, area.height, period.1);
         let row = if straight { &mut *out } else { &mut light };
         linear.row(&capture.counts, first, y, row);
@@ -41,7 +43,6 @@ pub(crate) fn tile(
             }
         }
     }
-    Mosaic { size, layout, samples }
 }
 
 /// The column (row) inside an area that stands for column `at`; `start` and `length` are the area's.

@@ -1,7 +1,6 @@
 //! Transfer curve and sample type: from linear light to what files hold.
 
 use darkroot_colour::TransferCurve;
-use darkroot_photo::{Display, Encoded, Rgb};
 use rayon::prelude::*;
 
 /// Smallest exponent of the table: below 2^-40 the curve is a straight line to 0.
@@ -15,6 +14,7 @@ pub struct Encoder {
     curve: TransferCurve,
     /// Value at the start of each piece; one more for the end.
     knots: Vec<f32>,
+    steps: Steps,
 }
 
 impl Encoder {
@@ -30,7 +30,9 @@ impl Encoder {
                 curve.encode(base * (1.0 + part as f64 / SEGMENTS as f64)) as f32
             })
             .collect();
-        Self { curve, knots }
+        let mut encoder = Self { curve, knots, steps: Steps::NONE };
+        encoder.steps = Steps::of(|linear| encoder.at(linear));
+        encoder
     }
 
     /// Encoded value of linear light of 0..=1; values outside are cut.
@@ -55,26 +57,92 @@ impl Encoder {
     }
 }
 
-/// Encodes for 8- or 16-bit files; what lies outside 0..=1 is cut.
-pub fn encode(mut picture: Rgb<Display>, encoder: &Encoder) -> Rgb<Encoded> {
-    for plane in picture.planes_mut() {
-        for v in plane {
-            *v = encoder.at(*v);
-        }
-    }
-    picture.into_space()
+/// A sample as files hold it.
+pub trait Sample: Copy + Default + Send + Sync {
+    /// The sample of linear light of 0..=1. Integers cut what lies outside; floating point is exact and cuts nothing.
+    fn of(linear: f32, encoder: &Encoder) -> Self;
 }
 
-/// Encodes for floating-point files: exact, nothing is cut.
-pub fn encode_unbounded(mut picture: Rgb<Display>, encoder: &Encoder) -> Rgb<Encoded> {
-    if encoder.curve != TransferCurve::Linear {
-        for plane in picture.planes_mut() {
-            for v in plane {
-                *v = encoder.curve.encode(f64::from(*v)) as f32;
-            }
+impl Sample for u8 {
+    #[inline(always)]
+    fn of(linear: f32, encoder: &Encoder) -> Self {
+        encoder.steps.at(linear)
+    }
+}
+
+impl Sample for u16 {
+    #[inline(always)]
+    fn of(linear: f32, encoder: &Encoder) -> Self {
+        (encoder.at(linear) * 65535.0 + 0.5) as Self
+    }
+}
+
+impl Sample for f32 {
+    #[inline(always)]
+    fn of(linear: f32, encoder: &Encoder) -> Self {
+        match encoder.curve {
+            TransferCurve::Linear => linear,
+            curve => curve.encode(f64::from(linear)) as Self,
         }
     }
-    picture.into_space()
+}
+
+/// Encodes a run of pixels; `out` gets R, G, B of each side by side.
+pub fn encode<T: Sample>([r, g, b]: [&[f32]; 3], encoder: &Encoder, out: &mut [T]) {
+    for (out, ((r, g), b)) in out.chunks_exact_mut(3).zip(r.iter().zip(g).zip(b)) {
+        out[0] = T::of(*r, encoder);
+        out[1] = T::of(*g, encoder);
+        out[2] = T::of(*b, encoder);
+    }
+}
+
+/// The curve in steps of 8 bits, exactly: the first bits of a floating-point number tell the step but for one, and where
+/// the next one begins decides.
+#[derive(Debug, Clone)]
+struct Steps {
+    /// Least light of each step, and of one beyond.
+    begins: [f32; 257],
+    /// First piece of the table; light below it is 0.
+    first: u32,
+    /// Step at the beginning of each piece. In no piece do two steps begin.
+    steps: Vec<u8>,
+}
+
+impl Steps {
+    /// Bits of a float that a piece leaves out: 256 pieces an octave, 68 steps in the uppermost one of sRGB.
+    const LEFT_OUT: u32 = 15;
+    const PIECES: u32 = 1 << (23 - Self::LEFT_OUT);
+
+    const NONE: Self = Self { begins: [0.0; 257], first: 0, steps: Vec::new() };
+
+    /// From a curve that is 0 at 0, 1 at 1 and rises.
+    fn of(curve: impl Fn(f32) -> f32) -> Self {
+        let step = |light: f32| (curve(light) * 255.0 + 0.5) as u32;
+        let mut begins = [f32::MAX; 257];
+        begins[0] = 0.0;
+        for k in 1..=255 {
+            // Floats from 0 to 1 are in the order of their bits.
+            let (mut below, mut at) = (0, 1f32.to_bits());
+            while at - below > 1 {
+                let middle = below + (at - below) / 2;
+                if step(f32::from_bits(middle)) >= k { at = middle } else { below = middle }
+            }
+            begins[k as usize] = f32::from_bits(at);
+        }
+        let first = begins[1].to_bits() >> Self::LEFT_OUT;
+        let begin = |piece: u32| step(f32::from_bits(piece << Self::LEFT_OUT)) as u8;
+        Self { begins, first, steps: (first..=127 * Self::PIECES).map(begin).collect() }
+    }
+
+    #[inline(always)]
+    fn at(&self, linear: f32) -> u8 {
+        // `max` makes 0 of a NaN, which `clamp` would keep.
+        let light = f32::min(linear.max(0.0), 1.0);
+        let piece = light.to_bits() >> Self::LEFT_OUT;
+        let i = piece.max(self.first) - self.first;
+        let step = self.steps.get(i as usize).copied().unwrap_or(u8::MAX);
+        step + u8::from(light >= self.begins[usize::from(step) + 1])
+    }
 }
 
 #[cfg(test)]
@@ -97,12 +165,33 @@ mod tests {
     }
 
     #[test]
+    fn steps_of_8_bits_are_those_of_the_curve() {
+        let curves = [
+            RgbSpace::SRGB,
+            RgbSpace::ADOBE_RGB,
+            RgbSpace::PROPHOTO,
+            RgbSpace::REC2020,
+            RgbSpace::ECIRGB_V2,
+            RgbSpace::SRGB.linear(),
+        ];
+        for space in curves {
+            let encoder = Encoder::new(space.curve);
+            for i in 0..=1_000_000u32 {
+                let v = (f64::from(i) / 1_000_000.0).powi(3) as f32;
+                assert_eq!(u8::of(v, &encoder), (encoder.at(v) * 255.0 + 0.5) as u8, "{} at {v}", space.name);
+            }
+        }
+    }
+
+    #[test]
     fn what_is_no_light_is_black_and_too_much_is_white() {
         let encoder = Encoder::new(TransferCurve::Srgb);
         for (v, expected) in
             [(f32::NAN, 0.0), (-1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (7.0, 1.0), (f32::INFINITY, 1.0)]
         {
             assert!((encoder.at(v) - expected).abs() < 1e-6, "{v}");
+            assert_eq!(f32::from(u8::of(v, &encoder)), 255.0 * expected, "{v}");
+            assert_eq!(f32::from(u16::of(v, &encoder)), 65535.0 * expected, "{v}");
         }
     }
 }

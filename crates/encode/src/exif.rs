@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use darkroot_colour::RgbSpace;
 use darkroot_photo::metadata::{Directory, Field, Value, tag};
-use darkroot_photo::{Metadata, Picture, PictureSpace};
+use darkroot_photo::{Metadata, PictureSpace, Size};
 use exif::experimental::Writer;
 use exif::{Context, In, Rational, SRational, Tag};
 
@@ -47,19 +47,19 @@ pub(crate) fn fields(metadata: &Metadata) -> impl Iterator<Item = &Field> {
 
 /// The fields of the shot together with what the fields of the file must say of this picture: its size and
 /// whether it is in sRGB. No fields stay no fields.
-pub(crate) fn of_picture(metadata: &Metadata, picture: &Picture) -> Metadata {
+pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace) -> Metadata {
     let mut metadata = metadata.clone();
     if fields(&metadata).next().is_none() {
         return Metadata::default();
     }
-    let srgb = match &picture.space {
+    let srgb = match space {
         PictureSpace::Rgb(space) => crate::format::same_colours(space, &RgbSpace::SRGB),
         PictureSpace::Camera => false,
     };
     let mut set = |tag, value| metadata.set(Directory::Exif, tag, value);
     set(tag::COLOUR_SPACE, Value::Shorts(vec![if srgb { 1 } else { UNCALIBRATED }]));
-    set(PIXEL_X_DIMENSION, Value::Longs(vec![picture.size.width as u32]));
-    set(PIXEL_Y_DIMENSION, Value::Longs(vec![picture.size.height as u32]));
+    set(PIXEL_X_DIMENSION, Value::Longs(vec![size.width as u32]));
+    set(PIXEL_Y_DIMENSION, Value::Longs(vec![size.height as u32]));
     if metadata.get(Directory::Exif, EXIF_VERSION).is_none() {
         metadata.set(Directory::Exif, EXIF_VERSION, Value::Undefined(b"0232".to_vec()));
     }
@@ -141,7 +141,7 @@ fn value(value: &Value) -> exif::Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{metadata, picture};
+    use crate::testing::metadata;
 
     fn read(block: Vec<u8>) -> exif::Exif {
         exif::Reader::new().read_raw(block).unwrap()
@@ -181,7 +181,7 @@ mod tests {
         turned.set(Directory::Image, tag::ORIENTATION, Value::Shorts(vec![6]));
         turned.set(Directory::Image, tag::ARTIST, Value::Text(String::new()));
         assert!(block(&turned).is_empty());
-        assert!(block(&of_picture(&turned, &picture(1, 1, 8, PictureSpace::Camera))).is_empty());
+        assert!(block(&of_picture(&turned, Size { width: 1, height: 1 }, &PictureSpace::Camera)).is_empty());
     }
 
     #[test]
@@ -197,8 +197,8 @@ mod tests {
     #[test]
     fn the_fields_tell_the_size_and_whether_it_is_srgb() {
         for (space, wanted) in [(RgbSpace::SRGB, 1), (RgbSpace::ADOBE_RGB, 0xffff)] {
-            let picture = picture(5, 3, 8, PictureSpace::Rgb(space));
-            let exif = read(block(&of_picture(&metadata(), &picture)));
+            let size = Size { width: 5, height: 3 };
+            let exif = read(block(&of_picture(&metadata(), size, &PictureSpace::Rgb(space))));
             assert_eq!(number(&exif, Tag::ColorSpace), Some(wanted));
             assert_eq!(number(&exif, Tag::PixelXDimension), Some(5));
             assert_eq!(number(&exif, Tag::PixelYDimension), Some(3));

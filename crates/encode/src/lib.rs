@@ -44,6 +44,9 @@ pub use options::{ChromaSubsampling, Options, TiffCompression};
 pub mod error;
 pub use error::Error;
 
+pub mod bands;
+pub use bands::{Outline, write_in_bands};
+
 pub mod exif;
 pub mod icc;
 
@@ -79,7 +82,7 @@ pub fn write<W: Write + Seek>(
     format.accepts(&picture.space)?;
     options.check()?;
     let frame = format::Frame::of(picture, format)?;
-    let metadata = exif::of_picture(metadata, picture);
+    let metadata = exif::of_picture(metadata, picture.size, &picture.space);
     output::buffered(out, |out| match format {
         Format::Jpeg => jpeg::write(&frame, options, &metadata, out),
         Format::Png => png::write(&frame, &metadata, out),
@@ -143,7 +146,10 @@ mod tests {
             }
             Format::Avif => {
                 let file = file.into_inner();
-                let block = exif::block(&exif::of_picture(&metadata(), &picture_for(format, 40, 30)));
+                let block = {
+                    let picture = picture_for(format, 40, 30);
+                    exif::block(&exif::of_picture(&metadata(), picture.size, &picture.space))
+                };
                 (None, file.windows(block.len()).find(|w| *w == block).map(<[u8]>::to_vec))
             }
             Format::Exr => (None, None),

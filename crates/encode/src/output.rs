@@ -51,17 +51,17 @@ pub(crate) type Buffered<'a, 'b, W> = BufWriter<&'a mut Output<'b, W>>;
 
 /// Runs `encode` on a buffer before `out`, and flushes it. An error of `out` comes back as [`Error::Io`],
 /// whatever the encoder made of it.
-pub(crate) fn buffered<W: Write + Seek>(
+pub(crate) fn buffered<W: Write + Seek, E: From<Error>>(
     out: &mut W,
-    encode: impl FnOnce(&mut Buffered<'_, '_, W>) -> Result<(), Error>,
-) -> Result<(), Error> {
+    encode: impl FnOnce(&mut Buffered<'_, '_, W>) -> Result<(), E>,
+) -> Result<(), E> {
     let mut output = Output { out, failure: None };
     let mut buffer = BufWriter::with_capacity(1 << 17, &mut output);
-    let result = encode(&mut buffer).and_then(|()| buffer.flush().map_err(Error::Io));
+    let result = encode(&mut buffer).and_then(|()| buffer.flush().map_err(|e| Error::Io(e).into()));
     // Dropping the buffer would try to write the rest of a file that has failed already.
     let _ = buffer.into_parts();
     match output.failure.take() {
-        Some(error) => Err(Error::Io(error)),
+        Some(error) => Err(Error::Io(error).into()),
         None => result,
     }
 }

@@ -8,16 +8,15 @@
 //! | [`Rgb<Scene>`](Rgb) | scene-linear Rec. 2020, unbounded, white (1,1,1) |
 //! | [`Rgb<Toned>`](Rgb) | a look applied: Rec. 2020 light as a display shall show it, 0..=1 |
 //! | [`Rgb<Display>`](Rgb) | linear, output primaries; 0..=1 after a look, unbounded in the linear look |
-//! | [`Rgb<Encoded>`](Rgb) | transfer curve applied: what files hold |
 //! | [`Picture`] | the finished picture, interleaved, in the sample type of the file |
 //!
 //! A stage takes one of these types and gives another, so a wrong order of stages does not compile:
 //!
 //! ```compile_fail
-//! use darkroot_photo::{Rgb, Scene, Encoded, Size};
-//! fn tone(picture: Rgb<Scene>) -> Rgb<Encoded> { unimplemented!() }
-//! let encoded: Rgb<Encoded> = Rgb::black(Size { width: 2, height: 2 });
-//! tone(encoded); // A picture cannot be toned twice.
+//! use darkroot_photo::{Rgb, Scene, Size, Toned};
+//! fn tone(picture: Rgb<Scene>) -> Rgb<Toned> { unimplemented!() }
+//! let toned: Rgb<Toned> = Rgb::black(Size { width: 2, height: 2 });
+//! tone(toned); // A picture cannot be toned twice.
 //! ```
 //!
 //! **What it does not do:** it computes nothing about colour, reads no bytes and knows no file.
@@ -35,7 +34,7 @@ pub mod correction;
 pub use correction::Correction;
 
 pub mod planes;
-pub use planes::{Camera as CameraSpace, Display, Encoded, Rgb, Scene, Toned};
+pub use planes::{Camera as CameraSpace, Display, Rgb, Scene, Toned};
 
 pub mod picture;
 pub use picture::{Picture, PictureSpace, Samples};

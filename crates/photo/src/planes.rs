@@ -20,10 +20,6 @@ pub enum Toned {}
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Display {}
 
-/// What files hold: the transfer curve applied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Encoded {}
-
 /// A picture of three planes in the space `S`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rgb<S> {
@@ -42,6 +38,14 @@ impl<S> Rgb<S> {
     /// A picture of these three planes, row by row; `None` unless each has `size.area()` values.
     pub fn from_planes(size: Size, planes: [Vec<f32>; 3]) -> Option<Self> {
         planes.iter().all(|p| p.len() == size.area()).then_some(Self { size, planes, space: PhantomData })
+    }
+
+    /// Takes another size. The values mean nothing then: whoever asks for this writes all of them.
+    pub fn resize(&mut self, size: Size) {
+        self.size = size;
+        for plane in &mut self.planes {
+            plane.resize(size.area(), 0.0);
+        }
     }
 
     /// Size in pixels.

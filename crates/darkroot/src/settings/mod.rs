@@ -144,11 +144,7 @@ impl Settings {
             16 => Bits::Sixteen,
             _ => Bits::Float,
         });
-        let bits = match recipe.output.bits {
-            Bits::Eight => 8,
-            Bits::Sixteen => 16,
-            Bits::Float => 32,
-        };
+        let bits = recipe.output.bits.count();
         if camera && (bits != 32 || !matches!(format, Format::Tiff | Format::Exr)) {
             return Err(SettingsError::CameraNeedsFloat);
         }

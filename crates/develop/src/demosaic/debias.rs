@@ -5,7 +5,8 @@
 //! different ones: in deep shadows red and blue come out too dark and green too bright, by some percent. The
 //! difference of the two variances, as measured for the capture at this brightness, is added.
 
-use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb};
+use darkroot_photo::{CameraSpace, Filter, Layout, Mosaic, Rgb};
+use darkroot_profile::simd::vectorised;
 
 use crate::noise::Noise;
 use crate::stage::{Stage, WhenSmaller};
@@ -18,35 +19,73 @@ pub const STAGE: Stage = Stage { name: "noise bias", border: BORDER, when_smalle
 
 /// Corrects a picture that [`super::Method::Lmmse`] made of this mosaic, which has `border` more pixels on each
 /// side.
+///
+/// The 2 x 2 pixels of a period of the array count as equally bright: as the mean of the 6 x 6 samples around them, which
+/// hold every channel in its share.
 pub fn debias(mosaic: &Mosaic<f32>, border: usize, noise: &Noise, picture: &mut Rgb<CameraSpace>) {
     let Layout::Cfa(cfa) = &mosaic.layout else { return };
     if *noise == Noise::NONE {
         return;
     }
-    let width = mosaic.size.width;
-    let size = picture.size();
-    let [r, g, b] = picture.planes_mut();
-    let mut columns = vec![0f32; size.width + 4];
-    for y in 0..size.height {
-        let v = y + border;
-        // Five by five samples hold every channel in nearly the same share.
-        let start = |row: usize| (v + row - 2) * width + border - 2;
-        let rows: [&[f32]; 5] = std::array::from_fn(|k| &mosaic.samples[start(k)..][..columns.len()]);
-        for (i, sum) in columns.iter_mut().enumerate() {
-            *sum = rows[0][i] + rows[1][i] + rows[2][i] + rows[3][i] + rows[4][i];
+    // Periods begin at red samples; the first one may begin one pixel before the picture.
+    let red = (0..4).map(|i| (i % 2, i / 2)).find(|(x, y)| cfa.at(*x, *y) == Filter::Red);
+    let (x0, y0) = red.map_or((0, 0), |(x, y)| ((x + border) % 2, (y + border) % 2));
+    let (size, width) = (picture.size(), mosaic.size.width);
+    let periods = (size.width + x0).div_ceil(2);
+    let mut columns = vec![0f32; 2 * periods + 4];
+    let mut variances = [0; 3].map(|_| vec![0f32; periods]);
+    let mut planes = picture.planes_mut();
+    for top in (border - y0..border + size.height).step_by(2) {
+        let start = |row: usize| (top + row - 2) * width + border - x0 - 2;
+        let rows: [&[f32]; 6] = std::array::from_fn(|k| &mosaic.samples[start(k)..][..columns.len()]);
+        vectorised(
+            #[inline(always)]
+            || {
+                for (i, sum) in columns.iter_mut().enumerate() {
+                    *sum = rows[0][i] + rows[1][i] + rows[2][i] + rows[3][i] + rows[4][i] + rows[5][i];
+                }
+            },
+        );
+        for i in 0..periods {
+            let sums = &columns[2 * i..2 * i + 6];
+            let brightness = sums.iter().sum::<f32>() * (1.0 / 36.0);
+            let of_period = noise.at(brightness);
+            for (variances, of_period) in variances.iter_mut().zip(of_period) {
+                variances[i] = of_period;
+            }
         }
-        let own = [0, 1].map(|x| cfa.at(border + x, v).plane().unwrap_or(1));
-        let run = y * size.width..(y + 1) * size.width;
-        let (r, g, b) = (&mut r[run.clone()], &mut g[run.clone()], &mut b[run]);
-        for (x, sums) in columns.windows(5).enumerate() {
-            let brightness = (sums[0] + sums[1] + sums[2] + sums[3] + sums[4]) * (1.0 / 25.0);
-            let variances = noise.at(brightness);
-            let of_site = variances[own[x % 2]];
-            r[x] += variances[0] - of_site;
-            g[x] += variances[1] - of_site;
-            b[x] += variances[2] - of_site;
+        for y in top.max(border)..(top + 2).min(border + size.height) {
+            let own = [0, 1].map(|x| cfa.at(border + x + x0, y).plane().unwrap_or(1));
+            for (c, plane) in planes.iter_mut().enumerate() {
+                let row = &mut plane[(y - border) * size.width..][..size.width];
+                add(row, x0, &variances[c], own.map(|own| &variances[own][..]));
+            }
         }
     }
+}
+
+/// Adds to each pixel of a row the variance of the channel less that of the pixel's own one. The row begins with the first
+/// (0) or second (1) pixel of a period.
+fn add(row: &mut [f32], first: usize, channel: &[f32], own: [&[f32]; 2]) {
+    let (before, row) = row.split_at_mut(first.min(row.len()));
+    for v in before {
+        *v += channel[0] - own[1][0];
+    }
+    let (channel, own) = (&channel[first..], own.map(|own| &own[first..]));
+    vectorised(
+        #[inline(always)]
+        || {
+            let mut pairs = row.chunks_exact_mut(2);
+            for (((pair, c), even), odd) in (&mut pairs).zip(channel).zip(own[0]).zip(own[1]) {
+                pair[0] += c - even;
+                pair[1] += c - odd;
+            }
+            let whole = channel.len().saturating_sub(1);
+            for v in pairs.into_remainder() {
+                *v += channel[whole] - own[0][whole];
+            }
+        },
+    );
 }
 
 #[cfg(test)]
@@ -85,7 +124,8 @@ mod tests {
         let capture = Capture::bare(Counts::F32(mosaic.clone()));
         let windows = crate::noise::windows(&capture, &LinearLight::of(&capture));
         let noise = Noise::of(&windows, [1.0; 3]);
-        let mut picture = demosaic(&mosaic, Method::Lmmse, 16);
+        let mut picture = Rgb::black(Size { width: 0, height: 0 });
+        demosaic(&mosaic, Method::Lmmse, 16, &mut picture);
         let plain = worst_error(&picture);
         debias(&mosaic, 16, &noise, &mut picture);
         let debiased = worst_error(&picture);

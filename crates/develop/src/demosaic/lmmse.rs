@@ -5,9 +5,15 @@
 //! rows and along columns it is estimated by a linear interpolation, whose error is taken for noise and removed
 //! by a local linear estimator; the two directions are joined by the inverse of their estimated errors. Other than in
 //! the paper, less of the second difference is used and the overshoot of green is limited.
+//!
+//! A tile is gone through from top to bottom, each step as many rows behind the one before as it looks ahead, so that only
+//! the last rows of each are kept.
+
+use std::array::from_fn;
 
 use darkroot_photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
 
+use super::rows::{Row, Rows};
 use super::{signed_sqrt, signed_square};
 use darkroot_profile::simd::vectorised;
 
@@ -46,63 +52,49 @@ pub fn demosaic(mosaic: &Mosaic<f32>, cfa: &Cfa, border: usize, picture: &mut Rg
 
 #[inline(always)]
 fn run(mosaic: &Mosaic<f32>, cfa: &Cfa, border: usize, picture: &mut Rgb<CameraSpace>) {
-    let (width, height) = (mosaic.size.width, mosaic.size.height);
-    let roots: Vec<f32> = mosaic.samples.iter().map(|&v| signed_sqrt(v)).collect();
-    let row = |y: usize| &roots[y * width..(y + 1) * width];
+    let (width, size) = (mosaic.size.width, picture.size());
+    let half = width.div_ceil(2);
+    // Of each: from the row that comes in back to the last one that is still looked at.
+    let mut roots = Rows::new(2 + 2 * HALF + 2, half);
+    let mut vertical = Rows::new(3 * HALF + 1, half);
+    let mut vertical_low = Rows::new(2 * HALF + 1, half);
+    let mut joined = Rows::new(3, half);
+    let (mut horizontal, mut horizontal_low) = (Row::new(half), Row::new(half));
+    let mut estimates = Estimates::new(half);
+    let mut finished = [0; 3].map(|_| Row::new(half));
 
-    // Difference green - other along columns, and its low-pass.
-    let mut vertical = vec![0f32; width * height];
-    for y in 2..height - 2 {
-        let out = &mut vertical[y * width..(y + 1) * width];
-        let rows = [row(y - 2), row(y - 1), row(y), row(y + 1), row(y + 2)];
-        difference(out, rows, green_columns(cfa, y));
-    }
-    let mut vertical_low = vec![0f32; width * height];
-    for y in 2 + HALF..height - 2 - HALF {
-        let rows: [&[f32]; 9] = std::array::from_fn(|k| &vertical[(y + k - HALF) * width..][..width]);
-        low_pass(&mut vertical_low[y * width..(y + 1) * width], rows);
-    }
-
-    // The joined difference, at red and blue sites of every row that the result needs.
-    let mut joined = vec![0f32; width * height];
-    let (mut horizontal, mut horizontal_low) = (vec![0f32; width], vec![0f32; width]);
-    let (mut x_h, mut e_h) = (vec![0f32; width], vec![0f32; width]);
-    let (mut x_v, mut e_v) = (vec![0f32; width], vec![0f32; width]);
-    for y in border - 1..height - border + 1 {
-        let line = row(y);
-        let inner = width - 4;
-        let shifts: [&[f32]; 5] = std::array::from_fn(|k| &line[k..k + inner]);
-        difference(&mut horizontal[2..2 + inner], shifts, green_columns(cfa, y));
-        let inner = width - 2 * HALF;
-        let shifts: [&[f32]; 9] = std::array::from_fn(|k| &horizontal[k..k + inner]);
-        low_pass(&mut horizontal_low[HALF..HALF + inner], shifts);
-        let lows: [&[f32]; 9] = std::array::from_fn(|k| &horizontal_low[k..k + inner]);
-        estimate(&mut x_h[HALF..HALF + inner], &mut e_h[HALF..HALF + inner], shifts, lows);
-
-        let rows: [&[f32]; 9] = std::array::from_fn(|k| &vertical[(y + k - HALF) * width..][..width]);
-        let lows: [&[f32]; 9] = std::array::from_fn(|k| &vertical_low[(y + k - HALF) * width..][..width]);
-        estimate(&mut x_v, &mut e_v, rows, lows);
-
-        let out = &mut joined[y * width..(y + 1) * width];
-        for ((((out, xh), eh), xv), ev) in out.iter_mut().zip(&x_h).zip(&e_h).zip(&x_v).zip(&e_v) {
-            let (eh, ev) = (eh + TINY, ev + TINY);
-            *out = (ev * xh + eh * xv) / (eh + ev);
+    let first = border - BORDER;
+    for y in first..border + size.height + BORDER {
+        roots.next(y).part(&mosaic.samples[y * width..(y + 1) * width], signed_sqrt);
+        // The row in the middle of those that have come in.
+        let middle = |behind: usize| (y >= first + 2 * behind).then(|| y - behind);
+        if let Some(y) = middle(2) {
+            difference_down(vertical.next(y), &roots, y, green_columns(cfa, y));
         }
-        limit(out, line, row(y - 1), row(y + 1));
-    }
-
-    let size = picture.size();
-    let [red, green, blue] = picture.planes_mut();
-    for y in 0..size.height {
-        let v = y + border;
-        let run = border..border + size.width;
-        let rows: [&[f32]; 3] = std::array::from_fn(|k| &joined[(v + k - 1) * width..][..width]);
-        let out = y * size.width..(y + 1) * size.width;
-        let (g_out, r_out, b_out) = (&mut green[out.clone()], &mut red[out.clone()], &mut blue[out]);
-        // `own` is the colour that shares this row with green, `other` the one of the rows above and below.
-        let red_row = (0..2).any(|x| cfa.at(x, v) == Filter::Red);
-        let (own, other) = if red_row { (r_out, b_out) } else { (b_out, r_out) };
-        colours(g_out, own, other, &row(v)[run.clone()], rows, border, green_columns(cfa, v));
+        if let Some(y) = middle(2 + HALF) {
+            low_pass_down(vertical_low.next(y), &vertical, y);
+        }
+        if let Some(y) = middle(2 + 2 * HALF) {
+            let greens = green_columns(cfa, y);
+            difference_along(&mut horizontal, roots.row(y), greens);
+            low_pass_along(&mut horizontal_low, &horizontal);
+            estimates.along(&horizontal, &horizontal_low, 1 - greens);
+            estimates.down(&vertical, &vertical_low, y, 1 - greens);
+            let out = &mut joined.next(y).columns[1 - greens][..];
+            estimates.join(out);
+            limit(out, &roots, y, 1 - greens);
+        }
+        if let Some(y) = middle(BORDER).filter(|y| *y < border + size.height) {
+            // `own` is the colour that shares this row with green, `other` the one of the rows above and below.
+            let [red, green, blue] = &mut finished;
+            let red_row = (0..2).any(|x| cfa.at(x, y) == Filter::Red);
+            let (own, other) = if red_row { (red, blue) } else { (blue, red) };
+            colours([green, own, other], roots.row(y), &joined, y, green_columns(cfa, y));
+            let out = (y - border) * size.width..(y - border + 1) * size.width;
+            for (row, plane) in finished.iter().zip(picture.planes_mut()) {
+                row.join(border, &mut plane[out.clone()]);
+            }
+        }
     }
 }
 
@@ -112,31 +104,108 @@ fn green_columns(cfa: &Cfa, y: usize) -> usize {
     usize::from(cfa.at(0, y) != Filter::Green)
 }
 
-/// Difference of green and the other colour from five samples in line (the interpolation of Hamilton and Adams,
-/// with less of the second difference). `greens` is the parity of the green sites; outputs begin at an even
-/// column.
+/// Differences along the columns of row `y`.
 #[inline(always)]
-fn difference(out: &mut [f32], s: [&[f32]; 5], greens: usize) {
-    let signs: [f32; 2] = if greens == 0 { [-1.0, 1.0] } else { [1.0, -1.0] };
-    let n = out.len();
-    let (a, b, c, d, e) = (&s[0][..n], &s[1][..n], &s[2][..n], &s[3][..n], &s[4][..n]);
-    for i in 0..n {
-        let bend = SECOND_DIFFERENCE * (2.0 * c[i] - a[i] - e[i]);
-        let estimate = 0.5 * (b[i] + d[i]) + bend - c[i];
-        out[i] = signs[i & 1] * estimate;
+fn difference_down(out: &mut Row, roots: &Rows, y: usize, greens: usize) {
+    for (parity, out) in out.columns.iter_mut().enumerate() {
+        let samples = [y - 2, y - 1, y, y + 1, y + 2].map(|y| &roots.row(y).columns[parity][..]);
+        difference(out, samples, parity == greens);
+    }
+}
+
+/// Differences along a row.
+#[inline(always)]
+fn difference_along(out: &mut Row, roots: &Row, greens: usize) {
+    for (parity, out) in out.columns.iter_mut().enumerate() {
+        let samples = [-2, -1, 0, 1, 2].map(|shift| roots.beside(parity, shift, 1));
+        let inner = 1..out.len() - 1;
+        difference(&mut out[inner], samples, parity == greens);
+    }
+}
+
+/// Difference of green and the other colour from five samples in line (the interpolation of Hamilton and Adams, with less
+/// of the second difference), of which the middle one is green or not.
+#[inline(always)]
+fn difference(out: &mut [f32], s: [&[f32]; 5], is_green: bool) {
+    let sign = if is_green { -1.0 } else { 1.0 };
+    let s = s.map(|s| &s[..out.len()]);
+    for (i, out) in out.iter_mut().enumerate() {
+        let bend = SECOND_DIFFERENCE * (2.0 * s[2][i] - s[0][i] - s[4][i]);
+        *out = sign * (0.5 * (s[1][i] + s[3][i]) + bend - s[2][i]);
+    }
+}
+
+#[inline(always)]
+fn low_pass_down(out: &mut Row, differences: &Rows, y: usize) {
+    for (parity, out) in out.columns.iter_mut().enumerate() {
+        low_pass(out, from_fn(|k| &differences.row(y + k - HALF).columns[parity][..]));
+    }
+}
+
+#[inline(always)]
+fn low_pass_along(out: &mut Row, differences: &Row) {
+    for (parity, out) in out.columns.iter_mut().enumerate() {
+        let inner = 3..out.len() - 3;
+        low_pass(&mut out[inner], from_fn(|k| differences.beside(parity, k as isize - HALF as isize, 3)));
     }
 }
 
 #[inline(always)]
 fn low_pass(out: &mut [f32], s: [&[f32]; 9]) {
-    let n = out.len();
-    let s = s.map(|s| &s[..n]);
-    for i in 0..n {
-        out[i] = LOW_PASS[0] * (s[0][i] + s[8][i])
+    let s = s.map(|s| &s[..out.len()]);
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = LOW_PASS[0] * (s[0][i] + s[8][i])
             + LOW_PASS[1] * (s[1][i] + s[7][i])
             + LOW_PASS[2] * (s[2][i] + s[6][i])
             + LOW_PASS[3] * (s[3][i] + s[5][i])
             + LOW_PASS[4] * s[4][i];
+    }
+}
+
+/// What the differences at red and blue sites of a row are, along it and along its columns, and how wrong that may be.
+struct Estimates {
+    along: [Vec<f32>; 2],
+    down: [Vec<f32>; 2],
+}
+
+impl Estimates {
+    fn new(half: usize) -> Self {
+        let two = || [vec![0.0; half], vec![0.0; half]];
+        Self { along: two(), down: two() }
+    }
+
+    #[inline(always)]
+    fn along(&mut self, differences: &Row, low: &Row, sites: usize) {
+        let [x, error] = &mut self.along;
+        let inner = 5..x.len() - 5;
+        estimate(
+            &mut x[inner.clone()],
+            &mut error[inner],
+            from_fn(|k| differences.beside(sites, k as isize - HALF as isize, 5)),
+            from_fn(|k| low.beside(sites, k as isize - HALF as isize, 5)),
+        );
+    }
+
+    #[inline(always)]
+    fn down(&mut self, differences: &Rows, low: &Rows, y: usize, sites: usize) {
+        let [x, error] = &mut self.down;
+        estimate(
+            x,
+            error,
+            from_fn(|k| &differences.row(y + k - HALF).columns[sites][..]),
+            from_fn(|k| &low.row(y + k - HALF).columns[sites][..]),
+        );
+    }
+
+    /// Joins both by the inverse of their errors.
+    #[inline(always)]
+    fn join(&self, out: &mut [f32]) {
+        let n = out.len();
+        let [[x_h, e_h], [x_v, e_v]] = [&self.along, &self.down].map(|d| d.each_ref().map(|v| &v[..n]));
+        for (i, out) in out.iter_mut().enumerate() {
+            let (e_h, e_v) = (e_h[i] + TINY, e_v[i] + TINY);
+            *out = (e_v * x_h[i] + e_h * x_v[i]) / (e_h + e_v);
+        }
     }
 }
 
@@ -147,66 +216,31 @@ fn estimate(x: &mut [f32], error: &mut [f32], signal: [&[f32]; 9], low: [&[f32];
     let (signal, low) = (signal.map(|s| &s[..n]), low.map(|s| &s[..n]));
     let error = &mut error[..n];
     for i in 0..n {
-        let mut mean = 0.0;
-        for low in &low {
-            mean += low[i];
-        }
-        mean *= 1.0 / 9.0;
-        let (mut own, mut noise) = (0.0, 0.0);
+        let (mut sum, mut squares, mut noise) = (0.0, 0.0, 0.0);
         for k in 0..9 {
-            let spread = low[k][i] - mean;
-            let rest = low[k][i] - signal[k][i];
-            own += spread * spread;
+            let low = low[k][i];
+            let rest = low - signal[k][i];
+            sum += low;
+            squares += low * low;
             noise += rest * rest;
         }
+        let mean = sum * (1.0 / 9.0);
+        let own = squares - sum * mean;
+        let own = if own > 0.0 { own } else { 0.0 };
         let gain = own / (own + noise + TINY);
         x[i] = mean + gain * (signal[4][i] - mean);
         error[i] = gain * noise;
     }
 }
 
-/// The three colours of one row from its samples and the joined differences of it and its neighbours. The
-/// samples begin at column `border` of the differences.
-#[inline(always)]
-fn colours(
-    green: &mut [f32],
-    own: &mut [f32],
-    other: &mut [f32],
-    samples: &[f32],
-    differences: [&[f32]; 3],
-    border: usize,
-    greens: usize,
-) {
-    let n = green.len();
-    let (own, other, samples) = (&mut own[..n], &mut other[..n], &samples[..n]);
-    let at = |row: usize, shift: usize| &differences[row][border + shift - 1..][..n];
-    let (up_left, up, up_right) = (at(0, 0), at(0, 1), at(0, 2));
-    let (left, here, right) = (at(1, 0), at(1, 1), at(1, 2));
-    let (down_left, down, down_right) = (at(2, 0), at(2, 1), at(2, 2));
-    for i in 0..n {
-        let s = samples[i];
-        let site = (i + border) & 1 == greens;
-        let (g, o, t) = if site {
-            (s, s - 0.5 * (left[i] + right[i]), s - 0.5 * (up[i] + down[i]))
-        } else {
-            let g = s + here[i];
-            (g, s, g - 0.25 * (up_left[i] + up_right[i] + down_left[i] + down_right[i]))
-        };
-        green[i] = signed_square(g);
-        own[i] = signed_square(o);
-        other[i] = signed_square(t);
-    }
-}
-
 /// Keeps green within the range of its four neighbours and as much again on both sides: where red or blue change by
 /// more than green does, as at the edges of saturated colours, the estimate overshoots and leaves a grid of dots.
-/// `line`, `above` and `below` are samples; only the differences at red and blue sites come to mean something.
 #[inline(always)]
-fn limit(differences: &mut [f32], line: &[f32], above: &[f32], below: &[f32]) {
+fn limit(differences: &mut [f32], roots: &Rows, y: usize, sites: usize) {
     let n = differences.len() - 2;
     let differences = &mut differences[1..=n];
-    let (left, here, right) = (&line[..n], &line[1..=n], &line[2..n + 2]);
-    let (up, down) = (&above[1..=n], &below[1..=n]);
+    let [left, here, right] = [-1, 0, 1].map(|shift| &roots.row(y).beside(sites, shift, 1)[..n]);
+    let [up, down] = [y - 1, y + 1].map(|y| &roots.row(y).beside(sites, 0, 1)[..n]);
     let least = |a: f32, b: f32| if a < b { a } else { b };
     let most = |a: f32, b: f32| if a > b { a } else { b };
     for i in 0..n {
@@ -215,5 +249,33 @@ fn limit(differences: &mut [f32], line: &[f32], above: &[f32], below: &[f32]) {
         let range = high - low;
         let green = here[i] + differences[i];
         differences[i] = least(most(green, low - range), high + range) - here[i];
+    }
+}
+
+/// Green, the colour that shares row `y` with it and the other one, from the row's samples and the differences there and
+/// in the rows above and below.
+#[inline(always)]
+fn colours([green, own, other]: [&mut Row; 3], samples: &Row, differences: &Rows, y: usize, greens: usize) {
+    let n = samples.columns[0].len() - 2;
+    let at = |down: usize, parity: usize, shift: isize| {
+        &differences.row(y + down - 1).beside(parity, shift, 1)[..n]
+    };
+    let sites = greens;
+    let (left, right, up, down) = (at(1, sites, -1), at(1, sites, 1), at(0, sites, 0), at(2, sites, 0));
+    let [g, o, t] = [&mut *green, &mut *own, &mut *other].map(|row| &mut row.columns[sites][1..=n]);
+    for (i, &s) in samples.beside(sites, 0, 1).iter().enumerate() {
+        g[i] = signed_square(s);
+        o[i] = signed_square(s - 0.5 * (left[i] + right[i]));
+        t[i] = signed_square(s - 0.5 * (up[i] + down[i]));
+    }
+    let sites = 1 - greens;
+    let (up_left, up_right) = (at(0, sites, -1), at(0, sites, 1));
+    let (here, down_left, down_right) = (at(1, sites, 0), at(2, sites, -1), at(2, sites, 1));
+    let [g, o, t] = [green, own, other].map(|row| &mut row.columns[sites][1..=n]);
+    for (i, &s) in samples.beside(sites, 0, 1).iter().enumerate() {
+        let estimate = s + here[i];
+        g[i] = signed_square(estimate);
+        o[i] = signed_square(s);
+        t[i] = signed_square(estimate - 0.25 * (up_left[i] + up_right[i] + down_left[i] + down_right[i]));
     }
 }

@@ -16,6 +16,7 @@ pub mod lmmse;
 pub mod reduce;
 mod reduce_any;
 mod reduce_bayer;
+mod rows;
 pub mod xtrans;
 mod xtrans_sites;
 
@@ -69,27 +70,25 @@ impl Method {
 }
 
 /// Interpolates the inner part of a balanced mosaic: `border` pixels, at least those of [`Method::stage`], are cut off
-/// on each side.
-pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize) -> Rgb<CameraSpace> {
+/// on each side. `picture` takes the size of what is left.
+pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize, picture: &mut Rgb<CameraSpace>) {
     let inner = Size { width: mosaic.size.width - 2 * border, height: mosaic.size.height - 2 * border };
-    let mut picture = Rgb::black(inner);
+    picture.resize(inner);
     match (method, &mosaic.layout) {
-        (Method::Lmmse, Layout::Cfa(cfa)) => lmmse::demosaic(mosaic, cfa, border, &mut picture),
+        (Method::Lmmse, Layout::Cfa(cfa)) => lmmse::demosaic(mosaic, cfa, border, picture),
         (Method::XTrans, Layout::Cfa(cfa)) => match xtrans_sites::phase(cfa) {
-            Some(phase) => xtrans::demosaic(mosaic, phase, border, &mut picture),
-            None => bilinear::demosaic(mosaic, cfa, border, &mut picture),
+            Some(phase) => xtrans::demosaic(mosaic, phase, border, picture),
+            None => bilinear::demosaic(mosaic, cfa, border, picture),
         },
-        (_, Layout::Cfa(cfa)) => bilinear::demosaic(mosaic, cfa, border, &mut picture),
-        (_, Layout::Rgb | Layout::Monochrome) => return split(mosaic, border),
+        (_, Layout::Cfa(cfa)) => bilinear::demosaic(mosaic, cfa, border, picture),
+        (_, Layout::Rgb | Layout::Monochrome) => split(mosaic, border, picture),
     }
-    picture
 }
 
 /// Splits the inner pixels, of one or three samples, into planes.
-fn split(mosaic: &Mosaic<f32>, border: usize) -> Rgb<CameraSpace> {
-    let (width, height) = (mosaic.size.width - 2 * border, mosaic.size.height - 2 * border);
+fn split(mosaic: &Mosaic<f32>, border: usize, picture: &mut Rgb<CameraSpace>) {
+    let Size { width, height } = picture.size();
     let planes = mosaic.layout.planes();
-    let mut picture = Rgb::black(Size { width, height });
     for (c, plane) in picture.planes_mut().into_iter().enumerate() {
         for y in 0..height {
             let start = ((y + border) * mosaic.size.width + border) * planes;
@@ -99,7 +98,6 @@ fn split(mosaic: &Mosaic<f32>, border: usize) -> Rgb<CameraSpace> {
             }
         }
     }
-    picture
 }
 
 /// Square root that keeps the sign.
@@ -114,5 +112,7 @@ pub(crate) fn signed_square(v: f32) -> f32 {
     v * v.abs()
 }
 
+#[cfg(test)]
+mod lmmse_slow;
 #[cfg(test)]
 mod tests;

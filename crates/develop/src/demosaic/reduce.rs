@@ -8,7 +8,7 @@
 use darkroot_photo::{CameraSpace, Layout, Mosaic, Rgb, Size};
 
 use super::reduce_any::Weights;
-use super::{reduce_any, reduce_bayer};
+use super::{Method, reduce_any, reduce_bayer};
 use crate::stage::{Stage, WhenSmaller};
 
 /// Pixels around a square that have a say in its colours.
@@ -45,23 +45,31 @@ impl Reduction {
     }
 
     /// Reduces the inner part of a balanced mosaic: `border` pixels, at least [`BORDER`], are cut off on each side, and
-    /// what is left becomes one pixel for each square of `bin` pixels, at least [`LEAST`]. `begin` is the place in the
-    /// frame at which the mosaic begins.
+    /// what is left becomes one pixel of `picture`, which takes its size, for each square of `bin` pixels, at least
+    /// [`LEAST`]. `begin` is the place in the frame at which the mosaic begins.
     pub(crate) fn reduce(
         &self,
         mosaic: &Mosaic<f32>,
         border: usize,
         bin: usize,
         begin: (isize, isize),
-    ) -> Rgb<CameraSpace> {
+        picture: &mut Rgb<CameraSpace>,
+    ) {
         let inner = |v: usize| (v - 2 * border) / bin;
         let size = Size { width: inner(mosaic.size.width), height: inner(mosaic.size.height) };
         match (self, &mosaic.layout) {
-            (Self::Bayer, Layout::Cfa(cfa)) => reduce_bayer::reduce(mosaic, cfa, border, bin, size),
-            (Self::Other(weights), _) => {
-                mean(&reduce_any::reduce(mosaic, border, begin, weights, size, bin), bin / reduce_any::SIDE)
+            (Self::Bayer, Layout::Cfa(cfa)) => {
+                picture.resize(size);
+                reduce_bayer::reduce(mosaic, cfa, border, bin, picture);
             }
-            _ => mean(&super::split(mosaic, border), bin),
+            (Self::Other(weights), _) => {
+                let squares = reduce_any::reduce(mosaic, border, begin, weights, size, bin);
+                *picture = mean(&squares, bin / reduce_any::SIDE);
+            }
+            _ => {
+                super::demosaic(mosaic, Method::None, border, picture);
+                *picture = mean(picture, bin);
+            }
         }
     }
 }

@@ -11,7 +11,7 @@
 //!
 //! and as all of it is linear, interpolation and sums are weights of the sites' differences.
 
-use darkroot_photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb, Size};
+use darkroot_photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
 use darkroot_profile::simd::vectorised;
 
 /// Pixels around a square that have a say in its colours: 4 to the farthest site, 2 around that.
@@ -22,46 +22,119 @@ const SECOND_DIFFERENCE: f32 = 0.1875;
 /// Smoothing of the differences, by sites away.
 const SMOOTHING: [f32; 3] = [0.125, 0.75, 0.125];
 
-/// Reduces the inner part of a Bayer mosaic.
+/// Columns that are summed at a time.
+const LANES: usize = 16;
+
+/// Reduces the inner part of a Bayer mosaic to a picture of that size.
 pub(super) fn reduce(
     mosaic: &Mosaic<f32>,
     cfa: &Cfa,
     border: usize,
     bin: usize,
-    size: Size,
-) -> Rgb<CameraSpace> {
-    let mut picture = Rgb::black(size);
-    let [red, green, blue] = picture.planes_mut();
-    totals(mosaic, border, bin, size, green);
-    for (filter, plane) in [(Filter::Red, &mut *red), (Filter::Blue, &mut *blue)] {
-        let site = (0..4).map(|i| (i % 2, i / 2)).find(|(x, y)| cfa.at(*x, *y) == filter);
-        let sums = SiteSums::of(mosaic, site.unwrap_or((0, 0)), border, bin, size);
-        sums.add(size, green, plane);
-    }
-    let share = 1.0 / (bin * bin) as f32;
-    for ((r, g), b) in red.iter_mut().zip(green.iter_mut()).zip(blue.iter_mut()) {
-        *g *= share;
-        *r = *g - *r * share;
-        *b = *g - *b * share;
-    }
-    picture
+    picture: &mut Rgb<CameraSpace>,
+) {
+    vectorised(
+        #[inline(always)]
+        || run(mosaic, cfa, border, bin, picture),
+    );
 }
 
-/// Sum of all samples of each square.
-fn totals(mosaic: &Mosaic<f32>, border: usize, bin: usize, size: Size, out: &mut [f32]) {
-    let width = size.width * bin;
-    let mut columns = vec![0f32; width];
-    for (v, out) in out.chunks_exact_mut(size.width.max(1)).enumerate() {
-        columns.fill(0.0);
-        for y in border + v * bin..border + (v + 1) * bin {
-            let row = &mosaic.samples[y * mosaic.size.width + border..][..width];
-            for (sum, sample) in columns.iter_mut().zip(row) {
-                *sum += sample;
+#[inline(always)]
+fn run(mosaic: &Mosaic<f32>, cfa: &Cfa, border: usize, bin: usize, picture: &mut Rgb<CameraSpace>) {
+    let size = picture.size();
+    let colours = [Filter::Red, Filter::Blue].map(|filter| Colour::of(cfa, filter, border, bin));
+    // Rows of differences, as many as one row of the picture needs.
+    let width = mosaic.size.width;
+    let mut differences: Vec<Vec<f32>> = vec![vec![0.0; width.next_multiple_of(LANES)]; bin + 2 * BORDER];
+    let count = differences.len();
+    let (mut of_sites, mut of_pixels) = (differences[0].clone(), differences[0].clone());
+    let mut columns = vec![0f32; size.width * bin];
+    let mut next = border - 4;
+    let share = 1.0 / (bin * bin) as f32;
+    let [red, green, blue] = picture.planes_mut();
+    for v in 0..size.height {
+        let top = border + v * bin;
+        while next < top + bin + 4 {
+            difference_row(mosaic, next, &mut differences[next % count]);
+            next += 1;
+        }
+        let row = v * size.width..(v + 1) * size.width;
+        let green = &mut green[row.clone()];
+        totals(mosaic, (border, top), bin, &mut columns, green);
+        for (colour, plane) in colours.iter().zip([&mut *red, &mut *blue]) {
+            let rows = colour.down.sites.iter().zip(&colour.down.pixels).enumerate();
+            let rows = rows.map(|(i, (site, pixel))| {
+                (&differences[(top + colour.first.1 + 2 * i - 4) % count][..], *site, *pixel)
+            });
+            sum_down(rows, &mut of_sites, &mut of_pixels);
+            let plane = &mut plane[row.clone()];
+            for (u, (green, out)) in green.iter_mut().zip(plane.iter_mut()).enumerate() {
+                let first = border + u * bin + colour.first.0 - 4;
+                let sum = |weights: &[f32], values: &[f32]| {
+                    weights.iter().zip(values[first..].iter().step_by(2)).map(|(w, v)| w * v).sum::<f32>()
+                };
+                *green += sum(&colour.across.sites, &of_sites);
+                *out = sum(&colour.across.pixels, &of_pixels);
             }
         }
-        for (out, columns) in out.iter_mut().zip(columns.chunks_exact(bin)) {
-            *out = columns.iter().sum::<f32>();
+        for ((r, g), b) in red[row.clone()].iter_mut().zip(green).zip(&mut blue[row]) {
+            *g *= share;
+            *r = *g - *r * share;
+            *b = *g - *b * share;
         }
+    }
+}
+
+/// Sums of all samples of the squares that begin at a column and row.
+#[inline(always)]
+fn totals(mosaic: &Mosaic<f32>, (x, y): (usize, usize), bin: usize, columns: &mut [f32], out: &mut [f32]) {
+    columns.fill(0.0);
+    for y in y..y + bin {
+        let row = &mosaic.samples[y * mosaic.size.width + x..][..columns.len()];
+        for (sum, sample) in columns.iter_mut().zip(row) {
+            *sum += sample;
+        }
+    }
+    for (out, columns) in out.iter_mut().zip(columns.chunks_exact(bin)) {
+        *out = columns.iter().sum::<f32>();
+    }
+}
+
+/// Weighted sums of rows: with the weights of sites, and with those of pixels.
+#[inline(always)]
+fn sum_down<'a>(
+    rows: impl Iterator<Item = (&'a [f32], f32, f32)> + Clone,
+    of_sites: &mut [f32],
+    of_pixels: &mut [f32],
+) {
+    let blocks = of_sites.chunks_exact_mut(LANES).zip(of_pixels.chunks_exact_mut(LANES));
+    for (i, (of_sites, of_pixels)) in blocks.enumerate() {
+        let (mut sites, mut pixels) = ([0f32; LANES], [0f32; LANES]);
+        for (row, site, pixel) in rows.clone() {
+            let row = &row[i * LANES..][..LANES];
+            for lane in 0..LANES {
+                sites[lane] += site * row[lane];
+                pixels[lane] += pixel * row[lane];
+            }
+        }
+        of_sites.copy_from_slice(&sites);
+        of_pixels.copy_from_slice(&pixels);
+    }
+}
+
+/// Where the sites of one colour are, and what they weigh.
+struct Colour {
+    /// Column and row of the first one in a square: 0 or 1.
+    first: (usize, usize),
+    across: AxisWeights,
+    down: AxisWeights,
+}
+
+impl Colour {
+    fn of(cfa: &Cfa, filter: Filter, border: usize, bin: usize) -> Self {
+        let site = (0..4).map(|i| (i % 2, i / 2)).find(|(x, y)| cfa.at(x + border, y + border) == filter);
+        let first = site.unwrap_or((0, 0));
+        Self { first, across: AxisWeights::of(bin, first.0), down: AxisWeights::of(bin, first.1) }
     }
 }
 
@@ -93,76 +166,30 @@ impl AxisWeights {
     }
 }
 
-/// Differences from green at the sites of one colour, summed along rows.
-struct SiteSums {
-    /// For each row of sites and each column of the smaller picture: over the sites, and over every pixel.
-    rows: Vec<(f32, f32)>,
-    weights: AxisWeights,
-    /// Rows of sites from one row of the smaller picture to the next.
-    step: usize,
-}
-
-impl SiteSums {
-    fn of(mosaic: &Mosaic<f32>, site: (usize, usize), border: usize, bin: usize, size: Size) -> Self {
-        let parity = |site: usize| (site + border) % 2;
-        let (across, down) = (AxisWeights::of(bin, parity(site.0)), AxisWeights::of(bin, parity(site.1)));
-        let first = |site: usize| border + parity(site) - 4;
-        let count = |pixels: usize| pixels * bin / 2 + 4;
-        let columns = count(size.width);
-        let mut differences = vec![0f32; columns];
-        let mut rows = Vec::with_capacity(count(size.height) * size.width);
-        for i in 0..count(size.height) {
-            difference_row(mosaic, (first(site.0), first(site.1) + 2 * i), &mut differences);
-            for x in 0..size.width {
-                let sites = &differences[x * bin / 2..][..across.sites.len()];
-                let sum = |weights: &[f32]| sites.iter().zip(weights).map(|(d, w)| d * w).sum::<f32>();
-                rows.push((sum(&across.sites), sum(&across.pixels)));
-            }
-        }
-        Self { rows, weights: down, step: bin / 2 }
-    }
-
-    /// Adds the sums over sites to green's totals, and those over every pixel to the colour's.
-    fn add(&self, size: Size, green: &mut [f32], colour: &mut [f32]) {
-        let width = size.width.max(1);
-        let lines = green.chunks_exact_mut(width).zip(colour.chunks_exact_mut(width)).enumerate();
-        for (v, (green, colour)) in lines {
-            let weights = self.weights.sites.iter().zip(&self.weights.pixels);
-            for (i, (of_sites, of_pixels)) in weights.enumerate() {
-                let sums = &self.rows[(v * self.step + i) * width..][..width];
-                for ((green, colour), (sites, pixels)) in green.iter_mut().zip(colour.iter_mut()).zip(sums) {
-                    *green += of_sites * sites;
-                    *colour += of_pixels * pixels;
-                }
-            }
-        }
-    }
-}
-
-/// Differences from green at every second pixel of a row, the first at column `x` of row `y`.
-fn difference_row(mosaic: &Mosaic<f32>, (x, y): (usize, usize), out: &mut [f32]) {
+/// Differences from green in row `y`, as if there were no green samples in it: they mean something at the sites of the
+/// other colour only.
+#[inline(always)]
+fn difference_row(mosaic: &Mosaic<f32>, y: usize, out: &mut [f32]) {
     let width = mosaic.size.width;
-    let length = 2 * out.len() + 3;
-    let row = |y: usize| &mosaic.samples[y * width + x - 2..][..length];
+    let row = |y: usize| &mosaic.samples[y * width..(y + 1) * width];
     let (above2, above, here, below, below2) = (row(y - 2), row(y - 1), row(y), row(y + 1), row(y + 2));
-    vectorised(
-        #[inline(always)]
-        || {
-            for (i, out) in out.iter_mut().enumerate() {
-                let c = 2 * i + 2;
-                let own = here[c];
-                let greens = here[c - 1] + here[c + 1] + above[c] + below[c];
-                let bend = 4.0 * own - here[c - 2] - here[c + 2] - above2[c] - below2[c];
-                *out = 0.25 * greens + 0.5 * SECOND_DIFFERENCE * bend - own;
-            }
-        },
-    );
+    let inner = 2..width - 2;
+    let n = inner.len();
+    let (out, above2, above) = (&mut out[inner.clone()], &above2[inner.clone()], &above[inner.clone()]);
+    let (below, below2) = (&below[inner.clone()], &below2[inner]);
+    let shifts: [&[f32]; 5] = std::array::from_fn(|k| &here[k..k + n]);
+    for i in 0..n {
+        let own = shifts[2][i];
+        let greens = shifts[1][i] + shifts[3][i] + above[i] + below[i];
+        let bend = 4.0 * own - shifts[0][i] - shifts[4][i] - above2[i] - below2[i];
+        out[i] = 0.25 * greens + 0.5 * SECOND_DIFFERENCE * bend - own;
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use darkroot_photo::Layout;
+    use darkroot_photo::{Layout, Size};
 
     #[test]
     fn a_surface_of_one_colour_keeps_it_whatever_the_phase() {
@@ -175,7 +202,8 @@ mod tests {
             let mosaic = Mosaic { size, layout: Layout::Cfa(cfa.clone()), samples };
             for bin in [4, 8] {
                 let small = Size { width: 16 / bin, height: 8 / bin };
-                let picture = reduce(&mosaic, &cfa, BORDER, bin, small);
+                let mut picture = Rgb::black(small);
+                reduce(&mosaic, &cfa, BORDER, bin, &mut picture);
                 for (plane, wanted) in picture.planes().iter().zip(colour) {
                     assert!(plane.iter().all(|v| (v - wanted).abs() < 1e-5), "{letters} {bin} {plane:?}");
                 }
@@ -189,7 +217,8 @@ mod tests {
         let size = Size { width: 2 * BORDER + 16, height: 2 * BORDER + 4 };
         let samples = (0..size.area()).map(|i| (i % size.width) as f32).collect();
         let mosaic = Mosaic { size, layout: Layout::Cfa(cfa.clone()), samples };
-        let picture = reduce(&mosaic, &cfa, BORDER, 4, Size { width: 4, height: 1 });
+        let mut picture = Rgb::black(Size { width: 4, height: 1 });
+        reduce(&mosaic, &cfa, BORDER, 4, &mut picture);
         for x in 0..4 {
             let middle = (BORDER + 4 * x) as f32 + 1.5;
             assert!(picture.at(x, 0).iter().all(|v| (v - middle).abs() < 1e-4), "{:?}", picture.at(x, 0));

@@ -2,6 +2,12 @@ use darkroot_photo::Cfa;
 
 use super::*;
 
+fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize) -> Rgb<CameraSpace> {
+    let mut picture = Rgb::black(Size { width: 0, height: 0 });
+    super::demosaic(mosaic, method, border, &mut picture);
+    picture
+}
+
 fn mosaic(cfa: &Cfa, size: Size, light: impl Fn(usize, usize, usize) -> f32) -> Mosaic<f32> {
     let samples = (0..size.area())
         .map(|i| {

@@ -1,0 +1,278 @@
+//! Developing one file.
+
+mod report;
+
+use std::io;
+use std::path::Path;
+use std::time::Instant;
+
+use darkroot_develop::{Bits, Cancel, Cancelled, OutputSpace, Plan, Recipe, Scale};
+use darkroot_encode::{Format, Outline};
+use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
+use darkroot_photo::{Capture, Picture, PictureSpace};
+
+use crate::files::{self, Failed};
+use crate::photo::Photo;
+use crate::settings::{Engine, Settings};
+use crate::store::ProfileStore;
+use crate::{Error, Job, VERSION};
+
+pub use report::Report;
+use report::{blank_report, colours};
+
+/// How far a file has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Step {
+    /// Reading and decoding.
+    Decode,
+    /// Running the stages.
+    Develop,
+    /// Encoding and writing.
+    Write,
+}
+
+/// What a job tells while it runs, and how it is stopped.
+#[derive(Default)]
+pub struct Control<'a> {
+    /// Hears of each step as it begins.
+    pub step: Option<&'a dyn Fn(Step)>,
+    /// Stops it: the job ends with [`Error::Cancelled`], and nothing is written.
+    pub cancel: Option<&'a Cancel>,
+    /// Sees the picture before it is written. Then all of it is in memory, which else it need not be.
+    pub seen: Option<&'a mut dyn FnMut(&Picture)>,
+}
+
+impl Control<'_> {
+    fn step(&self, step: Step) {
+        if let Some(hear) = self.step {
+            hear(step);
+        }
+    }
+}
+
+/// Develops one file and writes its picture.
+///
+/// # Errors
+/// One sentence that names the file, what is wrong and what to do. Nothing is left half written.
+pub fn develop(
+    job: &Job,
+    settings: &Settings,
+    store: &ProfileStore,
+    control: Control<'_>,
+) -> Result<Report, Error> {
+    refuse_existing(job, settings)?;
+    control.step(Step::Decode);
+    develop_bytes(job, || files::read(&job.input), settings, store, control)
+}
+
+/// Without `overwrite`, an output that exists is an error: before any work is done.
+fn refuse_existing(job: &Job, settings: &Settings) -> Result<(), Error> {
+    if !settings.overwrite && job.output.symlink_metadata().is_ok() {
+        return Err(Error::Exists { path: job.output.clone() });
+    }
+    Ok(())
+}
+
+/// As [`develop()`], with the bytes of the input from `read`.
+///
+/// # Errors
+/// As [`develop()`].
+pub fn develop_bytes(
+    job: &Job,
+    read: impl FnOnce() -> Result<Vec<u8>, Error>,
+    settings: &Settings,
+    store: &ProfileStore,
+    mut control: Control<'_>,
+) -> Result<Report, Error> {
+    let start = Instant::now();
+    let (input, output) = (&job.input, &job.output);
+    refuse_existing(job, settings)?;
+    let format = format_of(output, settings);
+    let recipe =
+        settings.resolve(format).map_err(|e| Error::Write { path: output.clone(), reason: e.to_string() })?;
+    let photo = Photo::open_with(&read()?, settings.decoder, &settings.limits)
+        .map_err(|source| Error::Raw { path: input.clone(), source })?;
+
+    control.step(Step::Develop);
+    let mut notes = photo.capture().notes.clone();
+    let uncancelled = Cancel::default();
+    let cancel = control.cancel.unwrap_or(&uncancelled);
+    let (mut report, metadata, picture) = match settings.engine {
+        Engine::Darkroot => {
+            let (plan, report) = plan(input, &photo, settings, store, &recipe)?;
+            let metadata = metadata_for(photo.capture(), &plan.picture_space());
+            drop(photo);
+            if format.takes_bands() && recipe.output.bits == Bits::Eight && control.seen.is_none() {
+                write_in_bands(job, settings, &metadata, &plan, cancel)?;
+                (report, metadata, None)
+            } else {
+                let picture = plan
+                    .render(plan.whole(Scale::FULL), cancel)
+                    .map_err(|Cancelled| Error::Cancelled { path: input.clone() })?;
+                (report, metadata, Some(picture))
+            }
+        }
+        Engine::Imagepipe => {
+            let (picture, report) = second_engine(input, photo.capture(), &recipe)?;
+            (report, metadata_for(photo.capture(), &picture.space), Some(picture))
+        }
+    };
+    control.step(Step::Write);
+    if let Some(picture) = picture {
+        if let Some(seen) = &mut control.seen {
+            seen(&picture);
+        }
+        write_file(job, settings, |out| {
+            Ok(darkroot_encode::write(&picture, format, &settings.encode, &metadata, out)?)
+        })?;
+    }
+    notes.append(&mut report.notes);
+    notes.dedup();
+    Ok(Report {
+        output: output.clone(),
+        format: format.name().to_owned(),
+        notes,
+        seconds: start.elapsed().as_secs_f64(),
+        ..report
+    })
+}
+
+/// Why no picture was written.
+enum Unwritten {
+    Cancelled,
+    Encode(darkroot_encode::Error),
+}
+
+impl From<Cancelled> for Unwritten {
+    fn from(Cancelled: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+impl From<darkroot_encode::Error> for Unwritten {
+    fn from(e: darkroot_encode::Error) -> Self {
+        Self::Encode(e)
+    }
+}
+
+/// Develops and writes at once: each band goes into the file when it is finished, by the thread that finished it.
+fn write_in_bands(
+    job: &Job,
+    settings: &Settings,
+    metadata: &Metadata,
+    plan: &Plan,
+    cancel: &Cancel,
+) -> Result<(), Error> {
+    let outline = Outline { size: plan.size(), space: plan.picture_space() };
+    write_file(job, settings, |out| {
+        darkroot_encode::write_in_bands(&outline, &settings.encode, metadata, out, |rows, take| {
+            plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[u8]| {
+                take(band, samples).map_err(Unwritten::Encode)
+            })
+        })
+    })
+}
+
+/// Writes the output through `fill`, whole or not at all.
+fn write_file(
+    job: &Job,
+    settings: &Settings,
+    fill: impl FnOnce(&mut io::BufWriter<&std::fs::File>) -> Result<(), Unwritten>,
+) -> Result<(), Error> {
+    let output = &job.output;
+    files::write(output, settings.scratch.as_deref(), settings.overwrite, fill).map_err(|failed| match failed
+    {
+        Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
+        Failed::Io(e) | Failed::Other(Unwritten::Encode(darkroot_encode::Error::Io(e))) => {
+            Error::write(output, &e)
+        }
+        Failed::Other(Unwritten::Encode(source)) => Error::Encode { path: output.clone(), source },
+        Failed::Other(Unwritten::Cancelled) => Error::Cancelled { path: job.input.clone() },
+    })
+}
+
+/// A finished picture as the bytes of a file, with its colour space and the metadata of the capture that it is from.
+///
+/// # Errors
+/// A format that cannot hold the picture.
+pub fn encode_picture(
+    picture: &Picture,
+    format: Format,
+    capture: &Capture,
+) -> Result<Vec<u8>, darkroot_encode::Error> {
+    let mut out = io::Cursor::new(Vec::new());
+    let metadata = metadata_for(capture, &picture.space);
+    darkroot_encode::write(picture, format, &darkroot_encode::Options::default(), &metadata, &mut out)?;
+    Ok(out.into_inner())
+}
+
+/// The format of an output: the one asked for, else by its ending.
+fn format_of(output: &Path, settings: &Settings) -> Format {
+    let by_name = || output.extension().and_then(|e| e.to_str()).and_then(Format::from_extension);
+    settings.format.or_else(by_name).unwrap_or_else(|| settings.default_format())
+}
+
+/// The plan of a job, and what it says of the picture.
+fn plan(
+    input: &Path,
+    photo: &Photo,
+    settings: &Settings,
+    store: &ProfileStore,
+    recipe: &Recipe,
+) -> Result<(Plan, Report), Error> {
+    let chosen = store.for_camera(&photo.capture().camera, &settings.profile);
+    let chosen = chosen.map_err(|fault| fault.about(input))?;
+    let profile = chosen.as_ref().map(|c| c.profile.as_ref());
+    let plan = darkroot_develop::plan(&photo.analyse_as_asked(), profile, recipe)
+        .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
+    let camera_output = recipe.output.space == OutputSpace::Camera;
+    let capture = photo.capture();
+    let report = Report {
+        engine: "darkroot".to_owned(),
+        colours: if camera_output {
+            "none (camera RGB)".to_owned()
+        } else {
+            colours(&plan, capture, profile)
+        },
+        profile: chosen.map(|c| c.place.into_owned()).filter(|_| !camera_output),
+        kelvin: plan.white.map(|w| w.kelvin),
+        tint: plan.white.map(|w| w.tint()),
+        multipliers: plan.multipliers,
+        demosaic: plan.demosaic.name().to_owned(),
+        gain: plan.gain,
+        notes: plan.notes.clone(),
+        ..blank_report(input, capture, plan.size(), &plan.picture_space(), recipe.output.bits)
+    };
+    Ok((plan, report))
+}
+
+#[cfg(feature = "imagepipe")]
+fn second_engine(input: &Path, capture: &Capture, recipe: &Recipe) -> Result<(Picture, Report), Error> {
+    let picture = crate::pipe::develop(capture, recipe.output.bits)
+        .map_err(|reason| Error::Engine { path: input.to_owned(), reason })?;
+    let report = Report {
+        engine: "imagepipe".to_owned(),
+        colours: "camera matrix, by imagepipe".to_owned(),
+        demosaic: "bilinear, by imagepipe".to_owned(),
+        ..blank_report(input, capture, picture.size, &picture.space, recipe.output.bits)
+    };
+    Ok((picture, report))
+}
+
+#[cfg(not(feature = "imagepipe"))]
+fn second_engine(input: &Path, _: &Capture, _: &Recipe) -> Result<(Picture, Report), Error> {
+    let reason = "this build was made without it".to_owned();
+    Err(Error::Engine { path: input.to_owned(), reason })
+}
+
+/// The camera's fields with what developing changed.
+fn metadata_for(capture: &Capture, space: &PictureSpace) -> Metadata {
+    const SRGB: u16 = 1;
+    const UNCALIBRATED: u16 = 65535;
+    let mut metadata = capture.metadata.clone();
+    metadata.set(Directory::Image, tag::SOFTWARE, Value::Text(format!("Darkroot {VERSION}")));
+    let srgb = *space == PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
+    let space = if srgb { SRGB } else { UNCALIBRATED };
+    metadata.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));
+    metadata
+}

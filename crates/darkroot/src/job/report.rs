@@ -1,0 +1,98 @@
+//! What was done to one file.
+
+use std::path::{Path, PathBuf};
+
+use darkroot_develop::{Bits, Colours, Plan};
+use darkroot_photo::{Capture, PictureSpace, Size};
+use darkroot_profile::Profile;
+use serde::Serialize;
+
+/// What was done to one file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Report {
+    /// The raw file.
+    #[serde(serialize_with = "crate::files::as_text")]
+    pub input: PathBuf,
+    /// The picture.
+    #[serde(serialize_with = "crate::files::as_text")]
+    pub output: PathBuf,
+    /// Its format.
+    pub format: String,
+    /// Its colour space.
+    pub space: String,
+    /// Its bits a sample.
+    pub bits: u8,
+    /// Its width in pixels.
+    pub width: usize,
+    /// Its height in pixels.
+    pub height: usize,
+    /// The camera.
+    pub camera: String,
+    /// Decoder and version.
+    pub decoder: String,
+    /// "darkroot" or "imagepipe".
+    pub engine: String,
+    /// What gave the colours, in words.
+    pub colours: String,
+    /// Path of the profile or "built in", when a profile was used.
+    pub profile: Option<String>,
+    /// Correlated colour temperature of the light, K, and tint, where known.
+    pub kelvin: Option<f64>,
+    /// Tint of the light: positive above the Planckian locus (greenish light), as raw developers show it.
+    pub tint: Option<f64>,
+    /// White-balance multipliers of red, green and blue; the smallest is 1.
+    pub multipliers: [f32; 3],
+    /// Demosaicing method.
+    pub demosaic: String,
+    /// Factor on scene-linear light (exposure).
+    pub gain: f32,
+    /// What had to be assumed or left out.
+    pub notes: Vec<String>,
+    /// Time taken.
+    pub seconds: f64,
+}
+
+/// What gave the colours, in words.
+pub(super) fn colours(plan: &Plan, capture: &Capture, profile: Option<&Profile>) -> String {
+    match (plan.colours, profile) {
+        (Colours::Profile, Some(p)) => {
+            let light = p.calibrations().iter().map(|c| c.light.name.as_str()).collect::<Vec<_>>().join(", ");
+            format!("profile for {} ({light})", p.camera().name())
+        }
+        (Colours::CameraMatrix, _) if capture.source.format == "DNG" => "matrix in the file".to_owned(),
+        (Colours::CameraMatrix, _) => "camera matrix".to_owned(),
+        (Colours::Grey, _) => "monochrome".to_owned(),
+        _ => "assumed".to_owned(),
+    }
+}
+
+/// What can be said of every picture.
+pub(super) fn blank_report(
+    input: &Path,
+    capture: &Capture,
+    size: Size,
+    space: &PictureSpace,
+    bits: Bits,
+) -> Report {
+    Report {
+        input: input.to_owned(),
+        output: PathBuf::new(),
+        format: String::new(),
+        space: space.name(),
+        bits: bits.count(),
+        width: size.width,
+        height: size.height,
+        camera: capture.camera.name(),
+        decoder: capture.source.decoder.clone(),
+        engine: String::new(),
+        colours: String::new(),
+        profile: None,
+        kelvin: None,
+        tint: None,
+        multipliers: [1.0; 3],
+        demosaic: String::new(),
+        gain: 1.0,
+        notes: Vec::new(),
+        seconds: 0.0,
+    }
+}

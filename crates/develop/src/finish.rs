@@ -1,0 +1,77 @@
+//! From balanced camera RGB on every stage looks at one pixel: a few rows go through all of them while they stay in the
+//! nearest cache.
+
+use darkroot_photo::{CameraSpace, Display, Orientation, Rect, Rgb, Scene, Size};
+
+use crate::grid::Grid;
+use crate::plan::Plan;
+use crate::transfer::{self, Sample};
+use crate::{correct, exposure, gamut, highlights, tone};
+
+/// Pixels that go through the stages together.
+const PIXELS: usize = 2048;
+
+/// What the stages work in.
+pub(crate) struct Finish<T> {
+    strip: Rgb<CameraSpace>,
+    row: Vec<T>,
+}
+
+impl<T: Sample> Finish<T> {
+    pub(crate) fn new() -> Self {
+        Self { strip: Rgb::black(Size { width: 0, height: 0 }), row: Vec::new() }
+    }
+
+    /// Finishes a tile, which lies at `rect` of the grid, and writes it into its band of the upright picture.
+    pub(crate) fn tile(
+        &mut self,
+        plan: &Plan,
+        grid: &Grid,
+        camera: &Rgb<CameraSpace>,
+        rect: Rect,
+        (band_rect, band): (Rect, &mut [T]),
+    ) {
+        let rows = (PIXELS / rect.width.max(1)).max(1);
+        for top in (0..rect.height).step_by(rows) {
+            let size = Size { width: rect.width, height: rows.min(rect.height - top) };
+            let mut strip = std::mem::replace(&mut self.strip, Rgb::black(Size { width: 0, height: 0 }));
+            strip.resize(size);
+            for (out, plane) in strip.planes_mut().into_iter().zip(camera.planes()) {
+                out.copy_from_slice(&plane[top * size.width..][..size.area()]);
+            }
+            let display = stages(strip, plan);
+            for y in 0..size.height {
+                let planes = display.planes().map(|plane| &plane[y * size.width..][..size.width]);
+                let start =
+                    |(u, v): (usize, usize)| ((v - band_rect.y) * band_rect.width + u - band_rect.x) * 3;
+                let at = |x: usize| start(grid.upright(rect.x + x, rect.y + top + y));
+                if grid.orientation == Orientation::Upright {
+                    let at = at(0);
+                    transfer::encode(planes, &plan.encoder, &mut band[at..at + 3 * size.width]);
+                } else {
+                    self.row.resize(3 * size.width, T::default());
+                    transfer::encode(planes, &plan.encoder, &mut self.row);
+                    for (x, pixel) in self.row.chunks_exact(3).enumerate() {
+                        let at = at(x);
+                        band[at..at + 3].copy_from_slice(pixel);
+                    }
+                }
+            }
+            self.strip = display.into_space();
+        }
+    }
+}
+
+/// All stages of one pixel but the last.
+fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
+    highlights::neutralise(&mut camera, &plan.highlights);
+    let Some(model) = &plan.model else {
+        return exposure::expose(camera.into_space::<Scene>(), plan.gain).into_space();
+    };
+    let scene = correct::correct(camera, model);
+    let scene = exposure::expose(scene, plan.gain);
+    match plan.curve {
+        Some(curve) => gamut::fit(tone::tone(scene, curve), &plan.primaries),
+        None => gamut::convert(scene, &plan.primaries),
+    }
+}

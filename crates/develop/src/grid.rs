@@ -1,0 +1,57 @@
+//! Where the pixels of a picture lie in the frame.
+
+use darkroot_photo::{Orientation, Rect, Size};
+
+use crate::plan::Plan;
+use crate::view::Scale;
+
+/// The pixels of a picture at a scale, as they lie in the frame.
+pub(crate) struct Grid {
+    /// Pixels of the frame along the side of one.
+    pub(crate) bin: usize,
+    /// Column and row of the frame at which they begin: left of or above the crop where its size is no multiple of
+    /// the bin and the picture's upright left or top edge is the frame's right or bottom one.
+    origin: (isize, isize),
+    /// Number of columns and rows.
+    size: Size,
+    pub(crate) orientation: Orientation,
+}
+
+impl Grid {
+    pub(crate) fn of(plan: &Plan, scale: Scale) -> Self {
+        let (crop, orientation, bin) = (plan.crop, plan.orientation, scale.bin());
+        let size = scale.of(crop.size());
+        let upright = orientation.applied_to(size);
+        // Which corner of the grid becomes the upright picture's top left one.
+        let (x, y) = match (upright.width, upright.height) {
+            (0, _) | (_, 0) => (0, 0),
+            _ => orientation.inverse().place(0, 0, upright),
+        };
+        let begin = |at: usize, start: usize, end: usize, count: usize| {
+            if at == 0 { start as isize } else { end as isize - (count * bin) as isize }
+        };
+        let origin =
+            (begin(x, crop.x, crop.right(), size.width), begin(y, crop.y, crop.bottom(), size.height));
+        Self { bin, origin, size, orientation }
+    }
+
+    /// The pixels that become a rectangle of the upright picture.
+    pub(crate) fn of_upright(&self, upright: Rect) -> Rect {
+        let size = self.orientation.applied_to(self.size);
+        let back = self.orientation.inverse();
+        let (x0, y0) = back.place(upright.x, upright.y, size);
+        let (x1, y1) = back.place(upright.right() - 1, upright.bottom() - 1, size);
+        Rect { x: x0.min(x1), y: y0.min(y1), width: x0.abs_diff(x1) + 1, height: y0.abs_diff(y1) + 1 }
+    }
+
+    /// Column and row of the upright picture that a pixel becomes.
+    #[inline(always)]
+    pub(crate) fn upright(&self, x: usize, y: usize) -> (usize, usize) {
+        self.orientation.place(x, y, self.size)
+    }
+
+    /// Column and row of the frame at which a rectangle begins.
+    pub(crate) fn corner(&self, rect: Rect) -> (isize, isize) {
+        (self.origin.0 + (rect.x * self.bin) as isize, self.origin.1 + (rect.y * self.bin) as isize)
+    }
+}
