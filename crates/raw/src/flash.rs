@@ -10,7 +10,7 @@ use crate::flash_facts::{
     as_shot, black_level, calibrations, camera, layout, pixel_aspect, rect, white_level,
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
-use crate::{Error, Limits, exif, opcodes};
+use crate::{Damage, Error, Limits, TooLarge, Unknown, exif, opcodes};
 
 /// What [`Source::decoder`] says.
 const NAME: &str = "flashraw 0.1.1";
@@ -125,22 +125,27 @@ pub(crate) fn error(e: &flashraw::Error) -> Error {
         }
         // A file that ends before its samples, as previews cut from raw files do.
         E::CameraUnsupported { reason, .. } if reason.contains("no lossless-JPEG raw stream") => {
-            Error::NoRawData { detail: reason.clone() }
+            Error::NoRawData { message: reason.clone() }
         }
         E::CameraUnsupported { make, model, reason } => Error::Camera {
             camera: if model.starts_with(make.as_str()) { model.clone() } else { format!("{make} {model}") },
-            detail: if reason.is_empty() { "not in its list".into() } else { reason.clone() },
+            reason: match reason.as_str() {
+                "" => Unknown::Camera,
+                message => Unknown::Decoder { message: message.to_owned() },
+            },
             decoder: "flashraw",
         },
-        E::OutOfMemory(detail) | E::LimitExceeded(detail) => Error::TooLarge { detail: detail.clone() },
-        E::NotAvailable(detail) => Error::NoRawData { detail: detail.clone() },
-        E::InvalidMetadata(detail) if detail.contains("no raw") => {
-            Error::NoRawData { detail: detail.clone() }
+        E::OutOfMemory(message) | E::LimitExceeded(message) => {
+            Error::TooLarge(TooLarge::Decoder { message: message.clone() })
+        }
+        E::NotAvailable(message) => Error::NoRawData { message: message.clone() },
+        E::InvalidMetadata(message) if message.contains("no raw") => {
+            Error::NoRawData { message: message.clone() }
         }
         other => {
-            let detail = other.to_string();
-            let detail = detail.strip_prefix("corrupt file: ").unwrap_or(&detail);
-            Error::Damaged { detail: detail.to_owned() }
+            let message = other.to_string();
+            let message = message.strip_prefix("corrupt file: ").unwrap_or(&message).to_owned();
+            Damage::Decoder { message }.into()
         }
     }
 }

@@ -6,7 +6,7 @@ use flashraw::{
     BlackLevel as FlashBlack, CfaColor, CfaPattern, ColorMatrices, ColorMatrix, FrameInfo, RawMetadata,
 };
 
-use crate::Error;
+use crate::{Damage, Error, Unknown};
 
 pub(crate) fn camera(meta: &RawMetadata) -> Camera {
     let common = |canonical: &str, written: &str| {
@@ -33,9 +33,9 @@ pub(crate) fn layout(info: &FrameInfo) -> Result<Layout, Error> {
         (1, Some(cfa)) => Ok(Layout::Cfa(filters(cfa)?)),
         (1, None) => Ok(Layout::Monochrome),
         (3, _) => Ok(Layout::Rgb),
-        (planes, _) => Err(Error::Camera {
+        (samples, _) => Err(Error::Camera {
             camera: "this camera".into(),
-            detail: format!("{planes} samples a pixel in the layout {:?}", info.layout),
+            reason: Unknown::Samples { samples, layout: format!("{:?}", info.layout) },
             decoder: "flashraw",
         }),
     }
@@ -72,7 +72,7 @@ pub(crate) fn black_level(black: &FlashBlack) -> Result<BlackLevel, Error> {
     let planes = usize::from(black.samples.max(1));
     let finite = black.values.iter().chain(&black.row_deltas).chain(&black.col_deltas).all(|v| v.is_finite());
     if !finite {
-        return Err(Error::Damaged { detail: "its black level is not a number".into() });
+        return Err(Damage::BlackLevel.into());
     }
     let mut values = black.values.clone();
     values.resize(rows * columns * planes, values.last().copied().unwrap_or(0.0));

@@ -10,7 +10,7 @@
 use darkroot_photo::Capture;
 
 pub mod error;
-pub use error::Error;
+pub use error::{Damage, Error, TooLarge, Unknown};
 
 pub mod limits;
 pub use limits::Limits;
@@ -55,7 +55,7 @@ pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture
         Decoder::Flashraw => guarded("flashraw", || flash::decode(bytes, &container, limits)),
         Decoder::Rawloader => {
             // rawloader takes a file that ends too early for a whole one; flashraw says so.
-            if let Err(damaged @ Error::Damaged { .. }) =
+            if let Err(damaged @ Error::Damaged(_)) =
                 guarded("flashraw", || flash::decode(bytes, &container, limits).map(drop))
             {
                 return Err(damaged);

@@ -6,7 +6,7 @@ use rawloader::RawImageData;
 
 use crate::screen::{DNG_VERSION, LINEARIZATION_TABLE};
 use crate::tiff::Directories;
-use crate::{Error, Limits};
+use crate::{Error, Limits, TooLarge, Unknown};
 
 /// Decodes the samples of `header` with rawloader.
 pub(crate) fn decode(bytes: &[u8], header: Capture, limits: &Limits) -> Result<Capture, Error> {
@@ -15,25 +15,18 @@ pub(crate) fn decode(bytes: &[u8], header: Capture, limits: &Limits) -> Result<C
     }
     let size = header.counts.size();
     if (size.area() * header.counts.layout().planes()) as u64 > limits.max_samples {
-        return Err(Error::TooLarge { detail: format!("{} x {} pixels", size.width, size.height) });
+        return Err(Error::TooLarge(TooLarge::Frame(size)));
     }
     let image = rawloader::decode(&mut std::io::Cursor::new(bytes)).map_err(|e| {
         // The library puts the word before the sentence.
         let text = e.to_string();
-        let detail = text.trim_start_matches("RawLoaderError: ").trim_matches('"').to_owned();
-        Error::Camera { camera: header.camera.name(), detail, decoder: "rawloader" }
+        let message = text.trim_start_matches("RawLoaderError: ").trim_matches('"').to_owned();
+        unknown(&header, Unknown::Decoder { message })
     })?;
-    let decoded = Size { width: image.width, height: image.height };
-    let planes = header.counts.layout().planes();
-    if decoded != size || image.cpp != planes {
-        return Err(Error::Camera {
-            camera: header.camera.name(),
-            detail: format!(
-                "it sees {} x {} pixels of {} samples where the file has {} x {} of {planes}",
-                image.width, image.height, image.cpp, size.width, size.height
-            ),
-            decoder: "rawloader",
-        });
+    let seen = Size { width: image.width, height: image.height };
+    let samples = header.counts.layout().planes();
+    if seen != size || image.cpp != samples {
+        return Err(unknown(&header, Unknown::Frame { seen, seen_samples: image.cpp, size, samples }));
     }
     let layout = header.counts.layout().clone();
     let counts = match image.data {
@@ -48,6 +41,10 @@ pub(crate) fn decode(bytes: &[u8], header: Capture, limits: &Limits) -> Result<C
             .push("rawloader dithers Nikon samples: they differ slightly from the stored ones".into());
     }
     Ok(capture)
+}
+
+fn unknown(header: &Capture, reason: Unknown) -> Error {
+    Error::Camera { camera: header.camera.name(), reason, decoder: "rawloader" }
 }
 
 /// Files that rawloader decodes wrongly without saying so (measured against known-truth files).

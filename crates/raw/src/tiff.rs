@@ -5,7 +5,7 @@
 
 use std::collections::HashSet;
 
-use crate::Error;
+use crate::{Damage, Error};
 
 /// Tags whose values point to further directories.
 const SUB_IFDS: u16 = 0x014a;
@@ -73,13 +73,13 @@ impl<'a> Directories<'a> {
     fn chain(&mut self, mut offset: u64, depth: usize, seen: &mut HashSet<u64>) -> Result<(), Error> {
         while offset != 0 {
             if depth > MAX_DEPTH {
-                return Err(damaged("its directories are nested too deep"));
+                return Err(Damage::DeepDirectories.into());
             }
             if !seen.insert(offset) {
-                return Err(damaged("its directories point back at each other"));
+                return Err(Damage::CircularDirectories.into());
             }
             if self.all.len() >= MAX_DIRECTORIES {
-                return Err(damaged("it has too many directories"));
+                return Err(Damage::ManyDirectories.into());
             }
             let Some((directory, next)) = self.directory(offset)? else {
                 // A chain that runs out of the file is common in truncated files and harmless in some whole
@@ -108,7 +108,7 @@ impl<'a> Directories<'a> {
         let count = if self.big { self.long8(start) } else { self.short(start).map(u64::from) };
         let Some(count) = count.and_then(|c| usize::try_from(c).ok()) else { return Ok(None) };
         if count > MAX_ENTRIES {
-            return Err(damaged("one of its directories claims thousands of entries"));
+            return Err(Damage::ManyEntries.into());
         }
         let mut entries = Vec::with_capacity(count);
         for i in 0..count {
@@ -200,8 +200,4 @@ fn size_of_kind(kind: u16) -> u64 {
         5 | 10 | 12 | 16 | 17 | 18 => 8,
         _ => 1,
     }
-}
-
-fn damaged(detail: &str) -> Error {
-    Error::Damaged { detail: detail.to_owned() }
 }
