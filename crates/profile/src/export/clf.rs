@@ -7,9 +7,9 @@ use std::fmt::Write as _;
 
 use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
 
-use super::Error;
 use super::cube::{describe, plain};
 use super::grid::{Grid, SIZES};
+use super::{ClfFault, Error};
 use crate::{Calibration, Profile};
 
 /// The file for one light: balanced camera RGB, 0..=1, to linear RGB of `space`, with a table of `size`^3 nodes.
@@ -74,11 +74,10 @@ impl Clf {
     /// # Errors
     /// Text with anything else in it.
     pub fn read(text: &str) -> Result<Self, Error> {
-        let wrong = |what: String| Error::file("CLF", what);
         let mut steps = Vec::new();
         let mut within = "";
         for piece in text.split('<').skip(1) {
-            let (tag, content) = piece.split_once('>').ok_or_else(|| wrong("a tag has no end".to_owned()))?;
+            let (tag, content) = piece.split_once('>').ok_or(ClfFault::OpenTag)?;
             let element = tag.split_whitespace().next().unwrap_or_default();
             let step = match element {
                 "Exponent" | "LUT3D" | "Matrix" => {
@@ -93,11 +92,11 @@ impl Clf {
                 }
                 "?xml" | "ProcessList" | "Description" | "InputDescriptor" | "OutputDescriptor" => continue,
                 _ if element.starts_with('/') => continue,
-                _ => return Err(wrong(format!("`{element}` is not known"))),
+                _ => return Err(ClfFault::UnknownElement(element.to_owned()).into()),
             };
-            steps.push(step.ok_or_else(|| wrong(format!("`{element}` cannot be understood")))?);
+            steps.push(step.ok_or_else(|| ClfFault::BrokenElement(element.to_owned()))?);
         }
-        if steps.is_empty() { Err(wrong("it has no steps".to_owned())) } else { Ok(Self { steps }) }
+        if steps.is_empty() { Err(ClfFault::NoSteps.into()) } else { Ok(Self { steps }) }
     }
 
     /// What comes out for balanced camera RGB.

@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 
 use darkroot_colour::{RgbSpace, Vector3, Xyz, white};
 
-use super::Error;
 use super::grid::{Grid, SIZES};
+use super::{CubeFault, CubeLine, Error};
 use crate::{Calibration, Profile};
 
 /// How camera RGB is coded before it goes into the table.
@@ -93,34 +93,33 @@ pub(super) fn plain(name: &str) -> String {
 /// # Errors
 /// Text that is no such file.
 pub fn read(text: &str) -> Result<Grid, Error> {
-    let wrong = |line: usize, what: &str| Error::file("cube", format!("line {}: {what}", line + 1));
+    let line = |i: usize, wrong: CubeLine| CubeFault::Line { line: i + 1, wrong };
     let mut size = None;
     let mut rows: Vec<[f64; 3]> = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let words: Vec<&str> = line.split_whitespace().take(4).collect();
+    for (i, text) in text.lines().enumerate() {
+        let words: Vec<&str> = text.split_whitespace().take(4).collect();
         match words[..] {
             [] | ["TITLE", ..] | ["DOMAIN_MIN", "0" | "0.0", ..] | ["DOMAIN_MAX", "1" | "1.0", ..] => {}
             [word, ..] if word.starts_with('#') => {}
             ["LUT_3D_SIZE", number] => {
                 let number = number.parse().ok().filter(|n| SIZES.contains(n));
-                size = Some(number.ok_or_else(|| wrong(i, "this size of table is not known"))?);
+                size = Some(number.ok_or_else(|| line(i, CubeLine::Size))?);
             }
             [r, g, b] => {
-                let parse = |v: &str| v.parse().map_err(|_| wrong(i, "there should be three numbers"));
+                let parse = |v: &str| v.parse().map_err(|_| line(i, CubeLine::NotNumbers));
                 rows.push([parse(r)?, parse(g)?, parse(b)?]);
             }
-            _ => return Err(wrong(i, "it is not known what this means")),
+            _ => return Err(line(i, CubeLine::Unknown).into()),
         }
     }
-    let size: usize = size.ok_or_else(|| Error::file("cube", "it has no LUT_3D_SIZE"))?;
+    let size: usize = size.ok_or(CubeFault::NoSize)?;
     if rows.len() != size.pow(3) {
-        let what = format!("it has {} rows of numbers, not {}", rows.len(), size.pow(3));
-        return Err(Error::file("cube", what));
+        return Err(CubeFault::Rows { rows: rows.len(), wanted: size.pow(3) }.into());
     }
     // In the file the first coordinate varies fastest.
     let turned =
         (0..rows.len()).map(|i| rows[(i % size * size + i / size % size) * size + i / (size * size)]);
-    Grid::new(size, turned.collect()).ok_or_else(|| Error::file("cube", "a number is not finite"))
+    Grid::new(size, turned.collect()).ok_or(CubeFault::NotFinite.into())
 }
 
 /// XYZ relative to D50 that a table gives for balanced camera RGB.

@@ -18,37 +18,10 @@ pub mod dcp;
 pub mod grid;
 pub mod icc;
 
+mod fault;
 mod gamut;
+pub use fault::{ClfFault, CubeFault, CubeLine, DcpFault, DcpLimit, Error, IccFault};
 pub use gamut::{Deviation, deviation, invert, srgb_colours};
-
-/// What can be wrong with an export, or with a file that is read back or imported. Messages about files complete
-/// "FILE: ".
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Error {
-    /// The format cannot hold the model.
-    #[error("{format} cannot hold this model: {what}")]
-    Model {
-        /// Name of the format.
-        format: &'static str,
-        /// Why not, with what to do.
-        what: String,
-    },
-    /// The file is not of the format, or damaged.
-    #[error("is not a {format} file that this program reads: {what}")]
-    File {
-        /// Name of the format.
-        format: &'static str,
-        /// What is wrong.
-        what: String,
-    },
-}
-
-impl Error {
-    fn file(format: &'static str, what: impl Into<String>) -> Self {
-        Self::File { format, what: what.into() }
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -4,7 +4,7 @@ use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use nalgebra::DMatrix;
 
 use super::{Dcp, DcpLight, HueSatMap, light_of};
-use crate::export::{Deviation, Error, deviation};
+use crate::export::{DcpFault, Deviation, Error, deviation};
 use crate::fit::least_squares::Problem;
 use crate::hue_plane::{CORNERS, at_position};
 use crate::model::Part as _;
@@ -37,10 +37,10 @@ pub fn import(bytes: &[u8]) -> Result<Imported, Error> {
     let mut both = Vec::new();
     for light in &dcp.lights {
         let light = DcpLight {
-            forward_matrix: white_preserving(&light.forward_matrix).ok_or_else(unusable)?,
+            forward_matrix: white_preserving(&light.forward_matrix).ok_or(DcpFault::NoColours)?,
             ..light.clone()
         };
-        let (kind, model) = model(&light).ok_or_else(unusable)?;
+        let (kind, model) = model(&light).ok_or(DcpFault::NoColours)?;
         let calibration = Calibration::new(light_of(light.illuminant), kind, model);
         let off = deviation(&calibration, |rgb| light.xyz(rgb));
         both.push((calibration, off));
@@ -48,7 +48,7 @@ pub fn import(bytes: &[u8]) -> Result<Imported, Error> {
     both.sort_by(|a, b| b.0.light.kelvin().total_cmp(&a.0.light.kelvin()));
     let (calibrations, deviations): (Vec<_>, Vec<Deviation>) = both.into_iter().unzip();
     let origin = Origin { summary: summary(&dcp, &deviations), ..Origin::default() };
-    let profile = Profile::new(camera_of(&dcp.camera), calibrations, origin).ok_or_else(unusable)?;
+    let profile = Profile::new(camera_of(&dcp.camera), calibrations, origin).ok_or(DcpFault::NoColours)?;
     Ok(Imported { profile, deviations })
 }
 
@@ -59,13 +59,9 @@ pub fn import(bytes: &[u8]) -> Result<Imported, Error> {
 pub fn camera(bytes: &[u8]) -> Result<ProfileCamera, Error> {
     let dcp = Dcp::read(bytes)?;
     if dcp.lights.iter().any(|light| white_preserving(&light.forward_matrix).is_none()) {
-        return Err(unusable());
+        return Err(DcpFault::NoColours.into());
     }
     Ok(camera_of(&dcp.camera))
-}
-
-fn unusable() -> Error {
-    Error::file("DCP", "its matrices and tables give no usable colours")
 }
 
 /// "Nikon D700": the first word is the maker.

@@ -20,7 +20,7 @@ use darkroot_colour::adaptation::bradford;
 use darkroot_colour::temperature::{daylight_xy, planckian_xy};
 use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
 
-use super::Error;
+use super::{DcpLimit, Error};
 use crate::{Calibration, Light, Model, Profile};
 
 /// What a DCP says, for one light or two.
@@ -71,7 +71,7 @@ impl Dcp {
     /// grey has no inverse.
     pub fn of(profile: &Profile, calibrations: &[WithNeutral<'_>]) -> Result<Self, Error> {
         if !(1..=2).contains(&calibrations.len()) {
-            return Err(cannot("it has one light or two"));
+            return Err(DcpLimit::Lights.into());
         }
         let mut by_warmth = calibrations.to_vec();
         by_warmth.sort_by(|a, b| a.calibration.light.kelvin().total_cmp(&b.calibration.light.kelvin()));
@@ -79,7 +79,7 @@ impl Dcp {
         if let [one, two] = &lights[..]
             && one.illuminant == two.illuminant
         {
-            return Err(cannot("its two lights would have the same temperature; choose one"));
+            return Err(DcpLimit::SameTemperature.into());
         }
         let names: Vec<&str> = by_warmth.iter().map(|c| c.calibration.light.name.as_str()).collect();
         let camera = profile.camera().name();
@@ -119,20 +119,17 @@ impl DcpLight {
 fn light(of: &WithNeutral<'_>) -> Result<DcpLight, Error> {
     let WithNeutral { calibration: Calibration { light, model, .. }, neutral } = of;
     if !model.is_exposure_invariant() {
-        return Err(cannot(
-            "its table cannot change with exposure as a plain polynomial does; export to ICC",
-        ));
+        return Err(DcpLimit::ChangesWithExposure.into());
     }
     if !neutral.iter().all(|v| *v > 0.0 && v.is_finite()) {
-        return Err(cannot("the neutral needs three numbers above 0"));
+        return Err(DcpLimit::Neutral.into());
     }
     let forward = file::rounded(&near_grey(model));
-    let regular = || cannot("its matrix near grey has no inverse");
-    let inverse = forward.try_inverse().ok_or_else(regular)?;
+    let inverse = forward.try_inverse().ok_or(DcpLimit::NoInverse)?;
     let largest = neutral.iter().copied().fold(0.0, f64::max);
     let unbalance = Matrix3::from_diagonal(&(Vector3::from(*neutral) / largest));
     let color_matrix = unbalance * inverse * bradford(light.xy.xyz(), white::D50);
-    let map = HueSatMap::of(model, &forward).ok_or_else(regular)?;
+    let map = HueSatMap::of(model, &forward).ok_or(DcpLimit::NoInverse)?;
     Ok(DcpLight { illuminant: illuminant(light), color_matrix, forward_matrix: forward, map })
 }
 
@@ -173,10 +170,6 @@ fn light_of(code: u16) -> Light {
 fn illuminant(light: &Light) -> u16 {
     let away = |kelvin: f64| (1e6 / kelvin - 1e6 / light.kelvin()).abs();
     CODES.into_iter().min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map_or(255, |(code, _)| code)
-}
-
-fn cannot(what: &str) -> Error {
-    Error::Model { format: "DCP", what: what.to_owned() }
 }
 
 #[cfg(test)]

@@ -5,23 +5,22 @@ use darkroot_colour::{Matrix3, Vector3, white};
 
 use super::file::{kind, tag};
 use super::{Dcp, DcpLight, HueSatMap, light_of};
-use crate::export::Error;
+use crate::export::{DcpFault, Error};
 
 /// Reads a DCP.
 pub(super) fn read(bytes: &[u8]) -> Result<Dcp, Error> {
-    let wrong = |what: &str| Error::file("DCP", what);
     let big = match bytes.get(..4) {
         Some(b"IIRC") => false,
         Some(b"MMCR") => true,
-        _ => return Err(wrong("it does not begin like one")),
+        _ => return Err(DcpFault::Begin.into()),
     };
     let file = File { bytes, big };
     let count = if file.has(tag::COLOR_MATRIX[1]) { 2 } else { 1 };
     let lights: Option<Vec<DcpLight>> = (0..count).map(|i| file.light(i)).collect();
     Ok(Dcp {
-        camera: file.text(tag::CAMERA).ok_or_else(|| wrong("it names no camera"))?,
+        camera: file.text(tag::CAMERA).ok_or(DcpFault::NoCamera)?,
         name: file.text(tag::NAME).unwrap_or_default(),
-        lights: lights.ok_or_else(|| wrong("it lacks a color matrix or has an unusable one or table"))?,
+        lights: lights.ok_or(DcpFault::Light)?,
         left_out: file.left_out(),
     })
 }

@@ -10,8 +10,8 @@ mod lut16;
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::{Lab, TransferCurve, Xyz, white};
 
-use super::Error;
 use super::grid::Grid;
+use super::{Error, IccFault};
 use crate::{Calibration, Profile};
 
 /// Nodes along each side that serve well.
@@ -188,12 +188,11 @@ impl Icc {
     /// # Errors
     /// Bytes that are nothing of the sort.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
-        let wrong = |what: &str| Error::file("ICC", what);
         if bytes.get(16..24) != Some(b"RGB Lab ".as_slice()) || bytes.get(36..40) != Some(b"acsp".as_slice())
         {
-            return Err(wrong("it is no profile from RGB to CIELAB"));
+            return Err(IccFault::Spaces.into());
         }
-        Self::table(bytes).ok_or_else(|| wrong("it has no table A2B0 of 16 bits behind curves"))
+        Self::table(bytes).ok_or(IccFault::NoTable.into())
     }
 
     fn table(bytes: &[u8]) -> Option<Self> {
