@@ -51,8 +51,8 @@ pub struct PatchPlace {
 #[non_exhaustive]
 pub enum LayoutError {
     /// The text is not TOML, or a field is missing or unknown.
-    #[error("the layout cannot be read: {0}; see the guide for its fields")]
-    Toml(String),
+    #[error("the layout cannot be read: {}; see the guide for its fields", .0.message())]
+    Toml(#[from] toml::de::Error),
     /// A line of a .cht file is not what Argyll's format has there.
     #[error("line {line} of the .cht file cannot be read: {what}")]
     Cht {
@@ -116,7 +116,7 @@ impl ChartLayout {
     /// A user's chart from TOML: `name`, `columns`, `rows`, `gap`, and per patch `[[patch]]` a `name` and about its
     /// `lab` under D50. `title` and `hinge = { after, width }` may follow.
     pub fn from_toml(text: &str) -> Result<Self, LayoutError> {
-        let own: Own = toml::from_str(text).map_err(|error| LayoutError::Toml(error.message().to_owned()))?;
+        let own: Own = toml::from_str(text)?;
         let title = own.title.unwrap_or_else(|| own.name.clone());
         let place =
             |p: OwnPatch| PatchPlace { name: p.name, lab: Lab { l: p.lab[0], a: p.lab[1], b: p.lab[2] } };

@@ -1,7 +1,7 @@
 //! CGATS.17 text files (ISO 28178) and what Argyll makes of them.
 
 use super::table::Table;
-use super::{Reference, ReferenceError};
+use super::{NotAReference, Reference, ReferenceError};
 
 /// Reads the first table of the file.
 pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
@@ -24,14 +24,13 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
         }
     }
     if columns.is_empty() {
-        return Err(ReferenceError::Format("it has no BEGIN_DATA_FORMAT".to_owned()));
+        return Err(NotAReference::NoDataFormat.into());
     }
     if cells.is_empty() {
-        return Err(ReferenceError::Format("it has no data between BEGIN_DATA and END_DATA".to_owned()));
+        return Err(NotAReference::NoData.into());
     }
     if !cells.len().is_multiple_of(columns.len()) {
-        let what = format!("{} values do not fill rows of {} columns", cells.len(), columns.len());
-        return Err(ReferenceError::Format(what));
+        return Err(NotAReference::Rows { values: cells.len(), columns: columns.len() }.into());
     }
     let rows = cells.chunks(columns.len()).map(<[String]>::to_vec).collect();
     Table { columns, rows }.reference()

@@ -4,15 +4,16 @@ use darkroot_colour::{Lab, Xyz};
 use roxmltree::{Document, Node};
 
 use super::ReferenceColour;
-use super::{ImpossibleColour, Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
+use super::{
+    ImpossibleColour, NotAReference, Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz,
+};
 
 /// Reads every object that has a colour: its reflectance, else its XYZ, else its Lab.
 pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
-    let document = Document::parse(text).map_err(|e| ReferenceError::Format(e.to_string()))?;
+    let document = Document::parse(text).map_err(NotAReference::Xml)?;
     let root = document.root_element();
     if root.tag_name().name() != "CxF" {
-        let what = format!("its XML is `{}`, not `CxF`", root.tag_name().name());
-        return Err(ReferenceError::Format(what));
+        return Err(NotAReference::OtherXml { element: root.tag_name().name().to_owned() }.into());
     }
     let objects = root.descendants().filter(|n| n.tag_name().name() == "Object");
     let mut patches = Vec::new();
@@ -26,9 +27,7 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
         }
     }
     if patches.is_empty() {
-        return Err(ReferenceError::Columns(
-            "no Object with a ReflectanceSpectrum, ColorCIEXYZ or ColorCIELab".into(),
-        ));
+        return Err(ReferenceError::NoColours);
     }
     Ok(Reference { patches })
 }
@@ -132,7 +131,7 @@ mod tests {
                 ),
                 "700 nm",
             ),
-            (file(""), "no Object"),
+            (file(""), "an Object"),
             ("<html/>".to_owned(), "`html`"),
             ("<cc:CxF".to_owned(), "no reference file"),
         ] {

@@ -31,12 +31,16 @@ pub enum ReferenceColour {
 pub enum ReferenceError {
     /// None of the formats.
     #[error("is no reference file: {0}; known are CGATS (.txt, .cie, .ti2, .ti3), CxF 3 and CSV")]
-    Format(String),
-    /// Neither Lab nor XYZ nor spectra.
+    Format(#[from] NotAReference),
+    /// A table with neither Lab nor XYZ nor spectra.
     #[error(
-        "has no colours: its columns are {0}; it needs LAB_L, LAB_A, LAB_B, or XYZ_X, XYZ_Y, XYZ_Z, or spectra"
+        "has no colours: its columns are {}; it needs LAB_L, LAB_A, LAB_B, or XYZ_X, XYZ_Y, XYZ_Z, or spectra",
+        .0.join(", ")
     )]
-    Columns(String),
+    Columns(Vec<String>),
+    /// CxF without colours.
+    #[error("has no colours: it needs an Object with a ReflectanceSpectrum, ColorCIEXYZ or ColorCIELab")]
+    NoColours,
     /// A cell that should be a number is none.
     #[error("patch {patch}: `{cell}` is not a number")]
     Number {
@@ -84,6 +88,47 @@ pub enum ReferenceError {
         /// Mean difference.
         off: f64,
     },
+}
+
+/// Why a text is of none of the formats.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotAReference {
+    /// CGATS without names of its columns.
+    #[error("it has no BEGIN_DATA_FORMAT")]
+    NoDataFormat,
+    /// CGATS without rows.
+    #[error("it has no data between BEGIN_DATA and END_DATA")]
+    NoData,
+    /// CGATS with a last row that is too short, or the like.
+    #[error("{values} values do not fill rows of {columns} columns")]
+    Rows {
+        /// Cells of the table.
+        values: usize,
+        /// Cells of a row.
+        columns: usize,
+    },
+    /// Broken XML.
+    #[error(transparent)]
+    Xml(roxmltree::Error),
+    /// XML of something else.
+    #[error("its XML is `{element}`, not `CxF`")]
+    OtherXml {
+        /// Name of the outermost element.
+        element: String,
+    },
+    /// No first line, or one without delimiters.
+    #[error("its first line names no columns")]
+    NoColumns,
+    /// Broken CSV.
+    #[error("{message}")]
+    Csv {
+        /// What the reader of CSV says.
+        message: String,
+    },
+    /// Columns and nothing below.
+    #[error("it has no patches")]
+    NoPatches,
 }
 
 /// Why a colour is that of no surface.

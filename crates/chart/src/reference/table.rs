@@ -2,7 +2,7 @@
 
 use darkroot_colour::{Lab, Xyz};
 
-use super::{Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
+use super::{NotAReference, Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz};
 
 /// Headers and rows of cells.
 pub(super) struct Table {
@@ -15,7 +15,7 @@ pub(super) fn parse_csv(text: &str) -> Result<Reference, ReferenceError> {
     let first = text.lines().find(|l| !l.trim().is_empty() && !l.starts_with('#')).unwrap_or_default();
     let delimiter = [b'\t', b';', b','].into_iter().find(|d| first.contains(char::from(*d)));
     let Some(delimiter) = delimiter else {
-        return Err(ReferenceError::Format("its first line names no columns".to_owned()));
+        return Err(NotAReference::NoColumns.into());
     };
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -25,11 +25,11 @@ pub(super) fn parse_csv(text: &str) -> Result<Reference, ReferenceError> {
         .from_reader(text.as_bytes());
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| ReferenceError::Format(e.to_string()))?;
+        let record = record.map_err(|e| NotAReference::Csv { message: e.to_string() })?;
         rows.push(record.iter().map(str::to_owned).collect::<Vec<_>>());
     }
     if rows.len() < 2 {
-        return Err(ReferenceError::Format("it has no patches".to_owned()));
+        return Err(NotAReference::NoPatches.into());
     }
     let columns = rows.remove(0);
     Table { columns, rows }.reference()
@@ -81,9 +81,9 @@ impl Table {
             };
             Ok((patch, colour))
         };
-        let patches = values.into_iter().map(colour).collect::<Result<Vec<_>, _>>()?;
+        let patches = values.into_iter().map(colour).collect::<Result<Vec<_>, ReferenceError>>()?;
         if patches.is_empty() {
-            return Err(ReferenceError::Format("it has no patches".to_owned()));
+            return Err(NotAReference::NoPatches.into());
         }
         Ok(Reference { patches })
     }
@@ -121,7 +121,7 @@ impl Table {
         if let Some(places) = triple([["LAB_L", "L", "L*"], ["LAB_A", "A", "A*"], ["LAB_B", "B", "B*"]]) {
             return Ok(Columns::Lab(places));
         }
-        Err(ReferenceError::Columns(self.columns.join(", ")))
+        Err(ReferenceError::Columns(self.columns.clone()))
     }
 }
 
