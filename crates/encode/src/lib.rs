@@ -96,13 +96,13 @@ pub fn write<W: Write + Seek>(
 
 #[cfg(test)]
 mod tests {
-    use std::io::{self, Cursor, SeekFrom};
+    use std::io::{self, Cursor, Seek, SeekFrom, Write};
 
-    use super::*;
+    use super::{Error, Format, Options, icc, write};
     use crate::testing::{SIZES, encoded, metadata, picture, picture_for};
-    use ::image::ImageDecoder;
     use darkroot_colour::RgbSpace;
-    use darkroot_photo::PictureSpace;
+    use darkroot_photo::{Metadata, PictureSpace};
+    use image::ImageDecoder;
 
     #[test]
     fn a_picture_of_any_size_can_be_written_in_every_format() {
@@ -128,15 +128,15 @@ mod tests {
         fn both(mut reader: impl ImageDecoder) -> (Option<Vec<u8>>, Option<Vec<u8>>) {
             (reader.icc_profile().unwrap(), reader.exif_metadata().unwrap())
         }
-        use ::image::codecs::{jpeg::JpegDecoder, png::PngDecoder, webp::WebPDecoder};
+        use image::codecs::{jpeg::JpegDecoder, png::PngDecoder, webp::WebPDecoder};
         let file = Cursor::new(file);
         match format {
             Format::Jpeg => both(JpegDecoder::new(file).unwrap()),
             Format::Png => both(PngDecoder::new(file).unwrap()),
             Format::Webp => both(WebPDecoder::new(file).unwrap()),
             Format::Tiff => {
-                let mut reader = ::tiff::decoder::Decoder::new(file.clone()).unwrap();
-                let profile = reader.get_tag_u8_vec(::tiff::tags::Tag::IccProfile).unwrap();
+                let mut reader = tiff::decoder::Decoder::new(file.clone()).unwrap();
+                let profile = reader.get_tag_u8_vec(tiff::tags::Tag::IccProfile).unwrap();
                 (Some(profile), Some(file.into_inner().to_vec())) // TIFF is its own Exif block.
             }
             Format::Jxl => {
@@ -148,7 +148,8 @@ mod tests {
                 let file = file.into_inner();
                 let block = {
                     let picture = picture_for(format, 40, 30);
-                    exif::block(&exif::of_picture(&metadata(), picture.size, &picture.space))
+                    let metadata = crate::exif::of_picture(&metadata(), picture.size, &picture.space);
+                    crate::exif::block(&metadata)
                 };
                 (None, file.windows(block.len()).find(|w| *w == block).map(<[u8]>::to_vec))
             }
@@ -169,7 +170,7 @@ mod tests {
 
     #[test]
     fn exif_comes_back_upright_from_each_format_that_has_a_place_for_it() {
-        use ::exif::{In, Reader, Tag};
+        use exif::{In, Reader, Tag};
         for format in Format::ALL.into_iter().filter(|format| *format != Format::Exr) {
             let file = encoded(&picture_for(format, 40, 30), format, &metadata()).unwrap();
             let block = found(format, &file).1.unwrap();
@@ -180,7 +181,7 @@ mod tests {
             let latitude = exif.get_field(Tag::GPSLatitude, In::PRIMARY).unwrap();
             assert_eq!(latitude.display_value().to_string(), "52 deg 31 min 12 sec", "{format}");
             let artist = &exif.get_field(Tag::Artist, In::PRIMARY).unwrap().value;
-            assert!(matches!(artist, ::exif::Value::Ascii(v) if v[0] == "Zoë Müller".as_bytes()), "{format}");
+            assert!(matches!(artist, exif::Value::Ascii(v) if v[0] == "Zoë Müller".as_bytes()), "{format}");
         }
     }
 
