@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::journal::JournalError;
-use super::plan_error::PlanError;
+use super::plan_fault::PlanFault;
 
 /// Why a batch cannot run.
 #[derive(Debug, thiserror::Error)]
@@ -14,7 +14,7 @@ pub enum BatchError {
     Journal(#[from] JournalError),
     /// The plan.
     #[error(transparent)]
-    Plan(#[from] PlanError),
+    Plan(#[from] PlanFault),
     /// Workers.
     #[error("workers cannot be started: {0}")]
     Worker(std::io::Error),

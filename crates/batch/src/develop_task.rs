@@ -50,7 +50,7 @@ pub(crate) fn develop(
     // The bytes whose hash is recorded are the ones that are decoded.
     let report = develop_bytes(&job, || Ok(bytes), &settings, store, control)?;
     let profile = hash::profile(&settings, camera, store)?;
-    let written = written(&task.output).map_err(|e| Error::read(&task.output, &e))?;
+    let written = written(&task.output).map_err(|e| Error::read(&task.output, e))?;
     let mut notes = report.notes;
     if let Some(colour) = colour {
         notes.push(format!("white balance and profile from the chart in {}", colour.chart));

@@ -7,6 +7,7 @@ use walkdir::{DirEntry, WalkDir};
 
 use super::facts::{FOLDER, modified};
 use super::filter::{Filter, FindError, MATCHING};
+use super::source_fault::SourceFault;
 
 /// What a person names as input.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -41,12 +42,12 @@ pub struct Source {
 }
 
 /// What was found.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Default)]
 pub struct Sources {
     /// The files, ordered by root and path.
     pub files: Vec<Source>,
-    /// What could not be read, in words: folders without permission, names that are no Unicode, broken links.
-    pub faults: Vec<String>,
+    /// What could not be read: folders without permission, names that are no Unicode, broken links.
+    pub faults: Vec<SourceFault>,
     /// Folders that were searched.
     pub folders: Vec<PathBuf>,
 }
@@ -138,7 +139,7 @@ fn walk(
         let entry = match entry {
             Ok(entry) => entry,
             Err(error) => {
-                found.faults.push(walk_fault(&error));
+                found.faults.push(error.into());
                 continue;
             }
         };
@@ -173,26 +174,12 @@ fn take(path: &Path, key: String, seen: &mut HashSet<PathBuf>, found: &mut Sourc
                 modified: modified(&data),
             });
         }
-        Err(error) => found.faults.push(darkroot::Error::read(path, &error).to_string()),
+        Err(error) => found.faults.push(darkroot::Error::read(path, error).into()),
     }
 }
 
-fn walk_fault(error: &walkdir::Error) -> String {
-    let path = error.path().map(|p| p.display().to_string()).unwrap_or_default();
-    if error.loop_ancestor().is_some() {
-        return format!("{path}: is a link to a folder above it; it is not followed");
-    }
-    match error.io_error().map(std::io::Error::kind) {
-        Some(std::io::ErrorKind::PermissionDenied) => {
-            format!("{path}: permission denied; check the folder's rights")
-        }
-        Some(std::io::ErrorKind::NotFound) => format!("{path}: is gone, or a link to nothing"),
-        _ => format!("{path}: cannot be read: {error}"),
-    }
-}
-
-fn no_unicode(path: &Path) -> String {
-    format!("{}: its name is no valid Unicode and cannot stand in a journal; rename it", path.display())
+fn no_unicode(path: &Path) -> SourceFault {
+    SourceFault::NoUnicode { path: path.to_owned() }
 }
 
 /// The last part of the path as text; empty when it is no Unicode.
@@ -288,6 +275,6 @@ mod tests {
             ..Search::default()
         };
         let found = find(&search, Path::new("o")).unwrap();
-        assert!(found.faults.iter().any(|f| f.contains("round")), "{:?}", found.faults);
+        assert!(found.faults.iter().any(|f| f.to_string().contains("round")), "{:?}", found.faults);
     }
 }

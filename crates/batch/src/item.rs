@@ -12,6 +12,7 @@ use super::failure::Conflict;
 use super::find::Source;
 use super::record::Done;
 use super::shard::Shard;
+use super::source_fault::SourceFault;
 use super::{hash, names};
 
 /// What outputs with one name become.
@@ -136,7 +137,7 @@ impl Item {
 }
 
 /// A batch, ready to run.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct BatchPlan {
     /// The output folder.
     pub out: PathBuf,
@@ -145,7 +146,7 @@ pub struct BatchPlan {
     /// All files of the shard.
     pub items: Vec<Item>,
     /// What could not be read while looking for inputs.
-    pub faults: Vec<String>,
+    pub faults: Vec<SourceFault>,
 }
 
 /// A number as it stands in what the settings' hash is taken of. Journals of earlier runs hold such hashes, so this

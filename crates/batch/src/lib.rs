@@ -42,13 +42,15 @@ pub mod system;
 pub mod wording;
 
 pub mod filter;
-pub mod find;
 pub mod record;
+pub mod source_fault;
+
+pub mod find;
 
 pub mod history;
 pub mod item;
 pub mod journal;
-pub mod plan_error;
+pub mod plan_fault;
 
 pub mod batch_error;
 pub mod estimate;
@@ -101,13 +103,14 @@ pub use item::{BatchPlan, Item, OnCollision, PlanOptions, State, Why};
 pub use journal::JournalError;
 pub use names::Collision;
 pub use notice::{Notice, WatchError, WatchOptions, Watched};
-pub use outcome::{Event, Summary};
+pub use outcome::{Event, StopReason, Summary};
 pub use plan::{check, plan_only};
-pub use plan_error::PlanError;
+pub use plan_fault::PlanFault;
 pub use session::{ChartShot, Session};
 pub use settings_by_file::SettingsByFile;
 pub use shard::{Shard, ShardError};
-pub use sheet::Sheet;
+pub use sheet::{Sheet, SheetError};
+pub use source_fault::SourceFault;
 pub use stop::Stop;
 pub use watch::watch;
 pub use wording::Wording;

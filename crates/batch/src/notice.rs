@@ -8,8 +8,9 @@ use super::batch_error::BatchError;
 use super::filter::FindError;
 use super::find::{Search, Source};
 use super::item::PlanOptions;
-use super::outcome::Event;
+use super::outcome::{Event, StopReason};
 use super::session::ChartShot;
+use super::source_fault::SourceFault;
 
 /// What to watch, and how.
 #[derive(Debug, Clone)]
@@ -46,7 +47,7 @@ pub enum Notice<'a> {
         words: &'a str,
     },
     /// Something cannot be read. Said once, as long as it is so.
-    Fault(&'a str),
+    Fault(&'a SourceFault),
     /// An input folder is not there; it is waited for.
     Away(&'a str),
     /// It is there again.
@@ -58,7 +59,7 @@ pub enum Notice<'a> {
 }
 
 /// How a watch came out.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Default)]
 pub struct Watched {
     /// Files developed.
     pub done: usize,
@@ -67,7 +68,7 @@ pub struct Watched {
     /// Files that wait for something: a recipe to be corrected, an output to be moved.
     pub held: usize,
     /// Why it ended by itself, if it did.
-    pub stopped: Option<String>,
+    pub stopped: Option<StopReason>,
 }
 
 /// Why nothing is watched.

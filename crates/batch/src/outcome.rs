@@ -1,8 +1,12 @@
 //! What a run tells while it goes on, and how it came out.
 
+use std::path::PathBuf;
+
 use super::failure::Failure;
 use super::item::Item;
+use super::journal::JournalError;
 use super::record::Done;
+use super::wording::Wording;
 
 /// What happens to a file.
 #[derive(Debug)]
@@ -33,12 +37,45 @@ pub enum Event<'a> {
     Later(&'a Item),
     /// It was not there any more when its turn came; no failure, while watching.
     Gone(&'a Item),
-    /// No more files are begun, for this reason.
-    Stopping(&'a str),
+    /// No more files are begun.
+    Stopping {
+        /// Why.
+        reason: &'a StopReason,
+        /// The same in one sentence, as the program words it.
+        words: &'a str,
+    },
+}
+
+/// Why no more files are begun.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StopReason {
+    /// The output folder is not there any more.
+    #[error("{path}: the output folder is gone; bring it back and run again", path = path.display())]
+    FolderGone {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The journal cannot be written.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// A file failed in a way that no other would escape: the disk is full.
+    #[error(transparent)]
+    Failure(#[from] Failure),
+}
+
+impl StopReason {
+    /// In words, as the program words it.
+    pub(crate) fn words(&self, wording: &Wording) -> String {
+        match self {
+            Self::Failure(failure) => failure.words(wording),
+            other => wording.of(other),
+        }
+    }
 }
 
 /// How a run came out.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Default)]
 pub struct Summary {
     /// Files developed.
     pub done: usize,
@@ -51,7 +88,7 @@ pub struct Summary {
     /// Files that are left because the run was stopped.
     pub left: usize,
     /// Why it was stopped before the end, if the disk or the output folder was the reason.
-    pub stopped: Option<String>,
+    pub stopped: Option<StopReason>,
     /// Whether a person or the system wanted it to stop.
     pub interrupted: bool,
     /// Pixels developed.

@@ -15,7 +15,7 @@ use super::headers::read_headers;
 use super::history::History;
 use super::item::{BatchPlan, FileSettings, Item, OnCollision, PlanOptions, State, Why};
 use super::names::{self, Fields};
-use super::plan_error::PlanError;
+use super::plan_fault::PlanFault;
 use super::settings_by_file::SettingsByFile;
 use super::state::{Profiles, state};
 use super::stop::Stop;
@@ -35,7 +35,7 @@ pub(crate) fn plan(
     store: &ProfileStore,
     headers: &mut dyn FnMut(&[Source]) -> Vec<Header>,
     session: &dyn Fn(&Source) -> Arc<Vec<SessionColour>>,
-) -> Result<BatchPlan, PlanError> {
+) -> Result<BatchPlan, PlanFault> {
     let files = sources.files;
     let prepared = prepare(&files, options, recipes)?;
     let numbers = numbers(&files, history);
@@ -44,7 +44,7 @@ pub(crate) fn plan(
     let collisions = names::collisions(&outputs);
     if !collisions.is_empty() {
         if options.on_collision == OnCollision::Refuse {
-            return Err(PlanError::Collisions(collisions));
+            return Err(PlanFault::Collisions(collisions));
         }
         let owner = |output: &str| history.outputs.get(output)?.done.as_ref().map(|d| d.input.clone());
         names::resolve(&mut outputs, owner);
@@ -87,14 +87,14 @@ pub fn check(
     sources: &Sources,
     options: &PlanOptions,
     recipes: &mut SettingsByFile,
-) -> Result<(), PlanError> {
+) -> Result<(), PlanFault> {
     let prepared = prepare(&sources.files, options, recipes)?;
     let numbers: Vec<usize> = (1..=sources.files.len()).collect();
     let outputs = name(&sources.files, options, &prepared, &numbers, &[])?;
     let collisions = names::collisions(&outputs);
     let certain = !names::needs_headers(&options.template) && options.on_collision == OnCollision::Refuse;
     if certain && !collisions.is_empty() {
-        return Err(PlanError::Collisions(collisions));
+        return Err(PlanFault::Collisions(collisions));
     }
     Ok(())
 }
@@ -104,7 +104,7 @@ fn prepare(
     files: &[Source],
     options: &PlanOptions,
     recipes: &mut SettingsByFile,
-) -> Result<Vec<Arc<FileSettings>>, PlanError> {
+) -> Result<Vec<Arc<FileSettings>>, PlanFault> {
     let target = target(&options.template)?;
     files.iter().map(|f| recipes.of(f, &target)).collect()
 }
@@ -116,7 +116,7 @@ fn name(
     prepared: &[Arc<FileSettings>],
     numbers: &[usize],
     heads: &[Header],
-) -> Result<Vec<(String, String)>, PlanError> {
+) -> Result<Vec<(String, String)>, PlanFault> {
     let mut outputs = Vec::with_capacity(files.len());
     for (i, file) in files.iter().enumerate() {
         let head = heads.get(i).cloned().unwrap_or_default();
@@ -146,14 +146,14 @@ pub fn plan_only(
     history: &History,
     store: &ProfileStore,
     crew: CrewOptions,
-) -> Result<BatchPlan, PlanError> {
+) -> Result<BatchPlan, PlanFault> {
     let mut crew = Crew::new(crew);
     let mut headers = |files: &[Source]| read_headers(&mut crew, files, &Stop::default());
     plan(sources, options, recipes, history, store, &mut headers, &|_| Arc::default())
 }
 
 /// What the template says of the format.
-fn target(template: &str) -> Result<Target, PlanError> {
+fn target(template: &str) -> Result<Target, PlanFault> {
     Ok(if template.ends_with("{ext}") || Target::Template(template.to_owned()).format().is_ok() {
         Target::Template(template.to_owned())
     } else {
@@ -174,12 +174,12 @@ fn numbers(files: &[Source], history: &History) -> Vec<usize> {
     files.iter().map(&mut number).collect()
 }
 
-fn refuse_over_inputs(files: &[Source], outputs: &[(String, String)], out: &Path) -> Result<(), PlanError> {
+fn refuse_over_inputs(files: &[Source], outputs: &[(String, String)], out: &Path) -> Result<(), PlanFault> {
     let real = |p: &Path| std::fs::canonicalize(p).ok();
     let inputs: std::collections::HashSet<PathBuf> = files.iter().filter_map(|f| real(&f.path)).collect();
     for (_, output) in outputs {
         if real(&out.join(output)).is_some_and(|path| inputs.contains(&path)) {
-            return Err(PlanError::OverInput { path: output.clone() });
+            return Err(PlanFault::OverInput { path: output.clone() });
         }
     }
     Ok(())

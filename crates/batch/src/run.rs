@@ -14,7 +14,7 @@ use super::history::History;
 use super::item::{BatchPlan, Item};
 use super::journal::{self, Journal, JournalError};
 use super::names;
-use super::outcome::{Event, Summary};
+use super::outcome::{Event, StopReason, Summary};
 use super::record::{Done, Failed, Record};
 use super::task::{Answer, Developed};
 use super::wording::Wording;
@@ -57,7 +57,7 @@ impl<'a> Run<'a> {
         let number = names::needs_number(&self.plan.template).then_some(item.number);
         let record = Record::Begun { input: item.source.key.clone(), output: item.output.clone(), number };
         if let Err(error) = self.write(record) {
-            return self.stop(self.wording.of(&error));
+            return self.stop(error);
         }
         let place = self.out.join(&item.output);
         if let Some(folder) = place.parent() {
@@ -89,7 +89,7 @@ impl<'a> Run<'a> {
         };
         if let Err(error) = self.write(Record::Done(Box::new(done.clone()))) {
             // The picture is there; the next run makes it again, as the journal does not know of it.
-            return self.stop(self.wording.of(&error));
+            return self.stop(error);
         }
         self.summary.done += 1;
         self.summary.pixels += done.width as u64 * done.height as u64;
@@ -110,7 +110,7 @@ impl<'a> Run<'a> {
         }
         let kind = failure.kind();
         match kind {
-            FailureKind::DiskFull => return self.stop(failure.words(&self.wording)),
+            FailureKind::DiskFull => return self.stop(failure.clone()),
             FailureKind::Output | FailureKind::Died => {
                 if let Some(reason) = self.vanished() {
                     return self.stop(reason);
@@ -136,7 +136,7 @@ impl<'a> Run<'a> {
             at: journal::now(),
         });
         if let Err(error) = self.write(record) {
-            return self.stop(self.wording.of(&error));
+            return self.stop(error);
         }
         self.summary.failed += 1;
         (self.on_event)(Event::Failed { item, failure, words: &words });
@@ -146,7 +146,7 @@ impl<'a> Run<'a> {
     fn gone(&mut self, item: &'a Item) -> Next {
         let record = Record::Gone { input: item.source.key.clone(), output: item.output.clone() };
         if let Err(error) = self.write(record) {
-            return self.stop(self.wording.of(&error));
+            return self.stop(error);
         }
         self.summary.gone += 1;
         (self.on_event)(Event::Gone(item));
@@ -168,15 +168,15 @@ impl<'a> Run<'a> {
     }
 
     /// What is wrong when the output folder is not there any more.
-    fn vanished(&self) -> Option<String> {
-        (!self.journal.is_there()).then(|| {
-            format!("{}: the output folder is gone; bring it back and run again", self.out.display())
-        })
+    fn vanished(&self) -> Option<StopReason> {
+        (!self.journal.is_there()).then(|| StopReason::FolderGone { path: self.out.to_owned() })
     }
 
-    fn stop(&mut self, reason: String) -> Next {
+    fn stop(&mut self, reason: impl Into<StopReason>) -> Next {
         if self.summary.stopped.is_none() {
-            (self.on_event)(Event::Stopping(&reason));
+            let reason = reason.into();
+            let words = reason.words(&self.wording);
+            (self.on_event)(Event::Stopping { reason: &reason, words: &words });
             self.summary.stopped = Some(reason);
         }
         Next::Finish

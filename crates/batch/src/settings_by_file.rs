@@ -8,7 +8,7 @@ use darkroot::recipe::Layers;
 
 use super::find::Source;
 use super::item::FileSettings;
-use super::plan_error::PlanError;
+use super::plan_fault::PlanFault;
 
 /// Settings by folder and file, each kind kept once.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl SettingsByFile {
     }
 
     /// What holds for a file. `target` tells the format where no setting does.
-    pub(crate) fn of(&mut self, source: &Source, target: &Target) -> Result<Arc<FileSettings>, PlanError> {
+    pub(crate) fn of(&mut self, source: &Source, target: &Target) -> Result<Arc<FileSettings>, PlanFault> {
         let effective = self.layers.for_file(&source.path)?;
         let mut settings = effective.settings()?;
         let format = effective.format(target, &settings, self.layers.flags())?;
@@ -41,7 +41,7 @@ impl SettingsByFile {
         if let std::collections::hash_map::Entry::Occupied(kept) = kept {
             return Ok(Arc::clone(kept.get()));
         }
-        settings.resolve(format).map_err(|e| PlanError::Settings { input: source.key.clone(), source: e })?;
+        settings.resolve(format).map_err(|e| PlanFault::Settings { input: source.key.clone(), source: e })?;
         let prepared = Arc::new(FileSettings { texts, settings, format, canonical });
         Ok(Arc::clone(kept.or_insert(prepared)))
     }

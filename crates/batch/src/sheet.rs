@@ -12,6 +12,7 @@ use serde_json::json;
 use super::item::{BatchPlan, Item, State};
 use super::journal;
 use super::outcome::{Event, Summary};
+
 /// How the page looks.
 const STYLE: &str = include_str!("sheet.css");
 
@@ -22,6 +23,23 @@ pub struct Sheet {
     json: Vec<PathBuf>,
     rows: Vec<Row>,
     pictures: Option<File>,
+    /// Why the run was stopped, in words.
+    stopped: Option<String>,
+}
+
+/// Why there is no report.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SheetError {
+    /// A name that tells of no kind of report.
+    #[error("{path}: cannot be written: a report ends in .html or .json", path = path.display())]
+    Ending {
+        /// The report.
+        path: PathBuf,
+    },
+    /// A place that cannot be written.
+    #[error(transparent)]
+    Write(#[from] Error),
 }
 
 /// What became of a file.
@@ -42,20 +60,18 @@ impl Sheet {
     ///
     /// # Errors
     /// Another ending, or no room for the small pictures.
-    pub fn new(places: &[PathBuf]) -> Result<Self, Error> {
-        let mut sheet = Self { html: Vec::new(), json: Vec::new(), rows: Vec::new(), pictures: None };
+    pub fn new(places: &[PathBuf]) -> Result<Self, SheetError> {
+        let mut sheet =
+            Self { html: Vec::new(), json: Vec::new(), rows: Vec::new(), pictures: None, stopped: None };
         for place in places {
             match place.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
                 Some("html" | "htm") => sheet.html.push(place.clone()),
                 Some("json") => sheet.json.push(place.clone()),
-                _ => {
-                    let reason = "a report ends in .html or .json".to_owned();
-                    return Err(Error::Write { path: place.clone(), reason });
-                }
+                _ => return Err(SheetError::Ending { path: place.clone() }),
             }
         }
         if let Some(place) = sheet.html.first() {
-            sheet.pictures = Some(tempfile::tempfile().map_err(|e| Error::write(place, &e))?);
+            sheet.pictures = Some(tempfile::tempfile().map_err(|e| Error::write(place, e))?);
         }
         Ok(sheet)
     }
@@ -88,7 +104,8 @@ impl Sheet {
             Event::Failed { item, words, .. } => {
                 self.rows.push(Row { error: Some((*words).to_owned()), ..row(item) });
             }
-            Event::Begun(_) | Event::Later(_) | Event::Gone(_) | Event::Stopping(_) => {}
+            Event::Stopping { words, .. } => self.stopped = Some((*words).to_owned()),
+            Event::Begun(_) | Event::Later(_) | Event::Gone(_) => {}
         }
     }
 
@@ -126,7 +143,7 @@ impl Sheet {
             write_text(path, &self.to_json(plan, summary), true)?;
         }
         for path in self.html.clone() {
-            let page = self.page(plan, summary, &path).map_err(|e| Error::write(&path, &e))?;
+            let page = self.page(plan, summary, &path).map_err(|e| Error::write(&path, e))?;
             write_text(&path, &page, true)?;
         }
         Ok(())
@@ -150,9 +167,9 @@ impl Sheet {
             "at": journal::now(),
             "output_folder": plan.out.to_string_lossy(),
             "done": summary.done, "failed": summary.failed, "unchanged": summary.skipped,
-            "left": summary.left, "stopped": summary.stopped, "interrupted": summary.interrupted,
+            "left": summary.left, "stopped": self.stopped, "interrupted": summary.interrupted,
             "seconds": summary.seconds, "megapixels": summary.pixels as f64 / 1e6,
-            "faults": plan.faults,
+            "faults": plan.faults.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "files": self.rows.iter().map(row).collect::<Vec<_>>(),
         });
         format!("{value:#}\n")
@@ -168,11 +185,11 @@ impl Sheet {
             };
             figures.push(figure(row, &link(base, &plan.out.join(&row.output)), picture.as_deref()));
         }
-        let faults = plan.faults.iter().map(String::as_str);
-        let failures = self.rows.iter().filter_map(|r| r.error.as_deref());
-        let bad: Vec<&str> = faults.chain(failures).collect();
+        let faults = plan.faults.iter().map(ToString::to_string);
+        let failures = self.rows.iter().filter_map(|r| r.error.clone());
+        let bad: Vec<String> = faults.chain(failures).collect();
         let body = html! {
-            header { (head(plan, summary)) }
+            header { (head(plan, summary, self.stopped.as_deref())) }
             @if !bad.is_empty() {
                 section.failures { h2 { "Failed" } ul { @for words in bad { li { (words) } } } }
             }
@@ -185,8 +202,8 @@ impl Sheet {
 }
 
 /// What the page begins with: the folder and the run's figures.
-fn head(plan: &BatchPlan, summary: &Summary) -> Markup {
-    let Summary { done, failed, skipped, left, seconds, pixels, stopped, .. } = summary;
+fn head(plan: &BatchPlan, summary: &Summary, stopped: Option<&str>) -> Markup {
+    let Summary { done, failed, skipped, left, seconds, pixels, .. } = summary;
     let mega = format!("{:.0}", *pixels as f64 / 1e6);
     html! {
         h1 { (plan.out.to_string_lossy()) }

@@ -122,7 +122,7 @@ struct Watch<'a> {
     settle: Settle,
     /// Inputs that are not there.
     away: HashSet<String>,
-    /// What cannot be read now.
+    /// What cannot be read now, in words.
     faults: HashSet<String>,
     /// What was said of sessions' colours in the last round.
     colours: HashSet<String>,
@@ -161,8 +161,8 @@ impl Watch<'_> {
             Err(FindError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error.into()),
         };
-        let faults: HashSet<String> = found.faults.iter().cloned().collect();
-        for fault in found.faults.iter().filter(|f| !self.faults.contains(*f)) {
+        let faults: HashSet<String> = found.faults.iter().map(ToString::to_string).collect();
+        for fault in found.faults.iter().filter(|f| !self.faults.contains(&f.to_string())) {
             (self.on_notice)(Notice::Fault(fault));
         }
         self.faults = faults;

@@ -10,7 +10,7 @@ use super::find::{Source, Sources};
 use super::history::Known;
 use super::item::{BatchPlan, Item, PlanOptions};
 use super::names::Collision;
-use super::plan_error::PlanError;
+use super::plan_fault::PlanFault;
 use super::session::Session;
 use super::settings_by_file::SettingsByFile;
 use super::stop::Stop;
@@ -55,7 +55,7 @@ impl PlanOfRound<'_> {
                     files.extend(others.into_iter().cloned());
                     files.sort_by(|a, b| a.key.cmp(&b.key));
                 }
-                Err(BatchError::Plan(PlanError::Collisions(collisions))) => {
+                Err(BatchError::Plan(PlanFault::Collisions(collisions))) => {
                     for collision in collisions {
                         hold_colliding(&collision, &mut files, &wanted, &mut planned);
                         owners.retain(|_, owner| !collision.inputs.contains(&owner.key));

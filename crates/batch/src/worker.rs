@@ -122,7 +122,7 @@ struct Input {
 
 fn read(task: &Task, host: &Host<'_>) -> Result<Input, TaskError> {
     let path = task.input();
-    let stat = || std::fs::metadata(path).map_err(|e| host.error(&Error::read(path, &e)));
+    let stat = || std::fs::metadata(path).map_err(|e| host.error(&Error::read(path, e)));
     let before = stat()?;
     let bytes = files::read(path).map_err(|e| host.error(&e))?;
     let after = stat()?;
@@ -251,7 +251,7 @@ fn with_same_content<T>(
     work: impl FnOnce() -> Result<T, Error>,
 ) -> Result<T, Fault> {
     let result = work()?;
-    let now = hash::file(path).map_err(|e| Error::read(path, &e))?;
+    let now = hash::file(path).map_err(|e| Error::read(path, e))?;
     if now == sha256 { Ok(result) } else { Err(Fault::Task(changing(path))) }
 }
 

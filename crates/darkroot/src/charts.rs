@@ -34,7 +34,7 @@ pub fn layout(text: &str) -> Result<ChartLayout, Error> {
     }
     let path = Path::new(text);
     if path.is_file() {
-        let content = std::fs::read_to_string(path).map_err(|e| Error::read(path, &e))?;
+        let content = std::fs::read_to_string(path).map_err(|e| Error::read(path, e))?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let read =
@@ -77,7 +77,7 @@ pub fn reference(text: Option<&str>, layout: &ChartLayout) -> Result<NamedRefere
         return Ok(found);
     }
     let path = Path::new(text);
-    let bytes = std::fs::read(path).map_err(|e| Error::read(path, &e))?;
+    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
     let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
     let Ok(content) = String::from_utf8(bytes) else {
         return fault(ChartError::NotText);

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use darkroot_calibrate::{CalibrateError, LightSource};
 
+use crate::SettingsError;
 use crate::fault::{ChartError, NeutralError, SpectraError};
 
 /// Why a file could not be developed or inspected.
@@ -12,12 +13,12 @@ use crate::fault::{ChartError, NeutralError, SpectraError};
 #[non_exhaustive]
 pub enum Error {
     /// The input cannot be read.
-    #[error("{path}: cannot be read: {reason}", path = path.display())]
+    #[error("{path}: cannot be read: {}", why_unread(source), path = path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says, with what to do.
-        reason: String,
+        /// What the system says.
+        source: io::Error,
     },
     /// The input is no raw file, or damaged.
     #[error("{path}: {source}", path = path.display())]
@@ -134,12 +135,20 @@ pub enum Error {
         path: PathBuf,
     },
     /// The output cannot be written.
-    #[error("{path}: cannot be written: {reason}", path = path.display())]
+    #[error("{path}: cannot be written: {}", why_unwritten(source), path = path.display())]
     Write {
         /// The output.
         path: PathBuf,
-        /// What the system says, with what to do.
-        reason: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Settings that contradict each other or the output's format.
+    #[error("{path}: cannot be written: {source}", path = path.display())]
+    Settings {
+        /// The output.
+        path: PathBuf,
+        /// What contradicts.
+        source: SettingsError,
     },
     /// The disk of the output is full.
     #[error("{path}: cannot be written: the disk is full; make room and run again", path = path.display())]
@@ -205,28 +214,37 @@ impl Error {
         Self::Fit { light: light.light.name.clone(), source }
     }
 
-    /// A file that cannot be read, with the cause in words.
-    pub fn read(path: &Path, error: &io::Error) -> Self {
-        let reason = match error.kind() {
-            io::ErrorKind::NotFound => "there is no such file; check the name".to_owned(),
-            io::ErrorKind::PermissionDenied => "permission denied; check the file's rights".to_owned(),
-            io::ErrorKind::IsADirectory => "it is a folder; name the files in it".to_owned(),
-            _ => error.to_string(),
-        };
-        Self::Read { path: path.to_owned(), reason }
+    /// A file that cannot be read.
+    pub fn read(path: &Path, source: io::Error) -> Self {
+        Self::Read { path: path.to_owned(), source }
     }
 
-    /// A file that cannot be written, with the cause in words.
-    pub fn write(path: &Path, error: &io::Error) -> Self {
-        if matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded) {
-            return Self::DiskFull { path: path.to_owned() };
+    /// A file that cannot be written.
+    pub fn write(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
+            _ => Self::Write { path, source },
         }
-        let reason = match error.kind() {
-            io::ErrorKind::NotFound => "its folder does not exist; create it first".to_owned(),
-            io::ErrorKind::PermissionDenied => "permission denied; choose another folder".to_owned(),
-            io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only; choose another folder".to_owned(),
-            _ => error.to_string(),
-        };
-        Self::Write { path: path.to_owned(), reason }
+    }
+}
+
+/// Why the system does not read a file, in words, with what to do.
+fn why_unread(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file; check the name".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied; check the file's rights".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a folder; name the files in it".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// Why the system does not write a file, in words, with what to do.
+fn why_unwritten(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "its folder does not exist; create it first".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied; choose another folder".to_owned(),
+        io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only; choose another folder".to_owned(),
+        _ => error.to_string(),
     }
 }

@@ -56,7 +56,7 @@ pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
     };
     let mut all = spectra::read(&file)?;
     if let Some(list) = list {
-        let names = std::fs::read_to_string(&list).map_err(|e| Error::read(&list, &e))?;
+        let names = std::fs::read_to_string(&list).map_err(|e| Error::read(&list, e))?;
         let names: Vec<String> =
             names.lines().map(|l| l.trim().to_owned()).filter(|l| !l.is_empty()).collect();
         all = all.only(&names).map_err(|name| {

@@ -51,7 +51,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Error> {
         }
         fs::read(path)
     };
-    attempt().map_err(|e| Error::read(path, &e))
+    attempt().map_err(|e| Error::read(path, e))
 }
 
 /// What became of writing a file.
@@ -113,10 +113,10 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8], overwrite: bool) -> Result<
         return Err(Error::Exists { path: path.to_owned() });
     }
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(|e| Error::write(path, &e))?;
+        fs::create_dir_all(folder).map_err(|e| Error::write(path, e))?;
     }
     write(path, None, overwrite, |out| out.write_all(bytes)).map_err(|failed| match failed {
-        Failed::Io(e) | Failed::Other(e) => Error::write(path, &e),
+        Failed::Io(e) | Failed::Other(e) => Error::write(path, e),
     })
 }
 

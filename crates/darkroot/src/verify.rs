@@ -136,7 +136,7 @@ pub fn append(path: &Path, line: &LogLine) -> Result<(), Error> {
         file.write_all(&text)?;
         file.sync_all()
     };
-    write().map_err(|e| Error::write(path, &e))
+    write().map_err(|e| Error::write(path, e))
 }
 
 /// Reads a log; lines that are torn or of another program are left out, and counted.
@@ -144,7 +144,7 @@ pub fn append(path: &Path, line: &LogLine) -> Result<(), Error> {
 /// # Errors
 /// A file that cannot be read, or that is no log.
 pub fn read_log(path: &Path) -> Result<(Vec<LogLine>, usize), Error> {
-    let text = std::fs::read_to_string(path).map_err(|e| Error::read(path, &e))?;
+    let text = std::fs::read_to_string(path).map_err(|e| Error::read(path, e))?;
     let mut lines = text.lines();
     if lines.next().is_none_or(|head| !head.split(',').eq(COLUMNS)) {
         return Err(Error::chart(path, ChartError::NoLog));

@@ -95,7 +95,7 @@ impl Shown {
 
     fn faults(&self, plan: &BatchPlan) {
         for fault in &plan.faults {
-            self.say(&format!("error: {fault}"));
+            self.say(&format!("error: {}", crate::hint::words(fault)));
         }
     }
 
@@ -103,7 +103,7 @@ impl Shown {
     pub(crate) fn begin(&mut self, plan: &BatchPlan) -> Result<()> {
         self.faults(plan);
         for fault in &plan.faults {
-            self.line(&json!({ "event": "fault", "error": fault }))?;
+            self.line(&json!({ "event": "fault", "error": crate::hint::words(fault) }))?;
         }
         let todo = plan.items.iter().filter(|i| matches!(i.state, State::Todo(_))).count();
         let unchanged = plan.items.iter().filter(|i| matches!(i.state, State::Done(_))).count();
@@ -180,9 +180,9 @@ impl Shown {
                 }
                 self.line(&json!({ "event": "gone", "input": item.source.path }))
             }
-            Event::Stopping(reason) => {
-                self.say(&format!("error: {reason}"));
-                self.line(&json!({ "event": "stopping", "error": reason }))
+            Event::Stopping { words, .. } => {
+                self.say(&format!("error: {words}"));
+                self.line(&json!({ "event": "stopping", "error": words }))
             }
         }
     }
@@ -199,9 +199,10 @@ impl Shown {
         self.bar.finish_and_clear();
         let Summary { done, failed, skipped, left, interrupted, pixels, seconds, .. } = *summary;
         let mega = pixels as f64 / 1e6;
+        let stopped = summary.stopped.as_ref().map(|reason| crate::hint::words(reason));
         self.line(&json!({
             "event": "summary", "done": done, "failed": failed, "unchanged": skipped, "left": left,
-            "faults": plan.faults.len(), "stopped": summary.stopped, "interrupted": interrupted,
+            "faults": plan.faults.len(), "stopped": stopped, "interrupted": interrupted,
             "megapixels": mega, "seconds": seconds, "peak_worker_memory": summary.peak, "estimated_worker_memory": summary.estimated,
         }))?;
         if !self.common.quiet {

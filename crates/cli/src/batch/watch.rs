@@ -122,9 +122,10 @@ impl Told<'_> {
                 shown.say(&format!("error: {words}"));
                 shown.line(&json!({ "event": "held", "input": source.path, "error": words }))
             }
-            Notice::Fault(error) => {
-                shown.say(&format!("error: {error}"));
-                shown.line(&json!({ "event": "fault", "error": error }))
+            Notice::Fault(fault) => {
+                let words = crate::hint::words(*fault);
+                shown.say(&format!("error: {words}"));
+                shown.line(&json!({ "event": "fault", "error": words }))
             }
             Notice::Away(input) => {
                 shown.say(&format!("{input}: is not there; waiting for it"));
@@ -153,6 +154,7 @@ impl Told<'_> {
             return Err(error);
         }
         let Watched { done, failed, held, stopped } = watched;
+        let stopped = stopped.as_ref().map(|reason| crate::hint::words(reason));
         if !self.common.quiet {
             self.shown.say(&format!("developed {done}, failed {failed}, waiting {held}"));
         }

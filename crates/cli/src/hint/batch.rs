@@ -3,7 +3,8 @@
 use std::error::Error;
 
 use darkroot_batch::{
-    BatchError, Collision, Conflict, Failure, JournalError, PlanError, ShardError, WatchError,
+    BatchError, Collision, Conflict, Failure, JournalError, PlanFault, ShardError, SheetError, SourceFault,
+    StopReason, WatchError,
 };
 
 /// What to do about an error of a batch.
@@ -25,6 +26,17 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     }
     if let Some(JournalError::Locked { .. }) = error.downcast_ref() {
         return say("wait for it, or share the work with `--shard I/N`");
+    }
+    match error.downcast_ref() {
+        Some(StopReason::Journal(inner)) => return hint(inner),
+        Some(StopReason::Failure(inner)) => return of_failure(inner),
+        _ => {}
+    }
+    if let Some(SourceFault::File(inner)) = error.downcast_ref() {
+        return super::of(inner);
+    }
+    if let Some(SheetError::Write(inner)) = error.downcast_ref() {
+        return super::of(inner);
     }
     if error.is::<Collision>() {
         return say(COLLISION);
@@ -61,13 +73,13 @@ fn of_conflict(conflict: &Conflict) -> Option<String> {
     }
 }
 
-fn of_plan(error: &PlanError) -> Option<String> {
+fn of_plan(error: &PlanFault) -> Option<String> {
     match error {
-        PlanError::Collisions(_) => say(COLLISION),
-        PlanError::OverInput { .. } => say("choose another `-o`"),
-        PlanError::Naming(inner) => super::of(inner),
-        PlanError::Recipe(inner) => super::of(inner),
-        PlanError::Settings { source, .. } => super::of(source),
+        PlanFault::Collisions(_) => say(COLLISION),
+        PlanFault::OverInput { .. } => say("choose another `-o`"),
+        PlanFault::Naming(inner) => super::of(inner),
+        PlanFault::Recipe(inner) => super::of(inner),
+        PlanFault::Settings { source, .. } => super::of(source),
         _ => None,
     }
 }
@@ -128,7 +140,7 @@ mod tests {
         let watch = WatchError::Batch(BatchError::Journal(locked()));
         assert!(words(&watch).contains("--shard I/N"), "{}", words(&watch));
         let collision = Collision { output: "a.jpg".into(), inputs: vec!["a.nef".into(), "a.dng".into()] };
-        let plan = BatchError::Plan(PlanError::Collisions(vec![collision]));
+        let plan = BatchError::Plan(PlanFault::Collisions(vec![collision]));
         let text = words(&plan);
         assert!(text.contains("a.jpg: a.nef, a.dng\n") && text.contains("--on-collision suffix"), "{text}");
     }

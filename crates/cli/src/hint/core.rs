@@ -6,6 +6,9 @@ use darkroot::{NamingError, RecipeError, SettingsError};
 
 /// What to do about an error of the core.
 pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
+    if let Some(darkroot::Error::Settings { source, .. }) = error.downcast_ref() {
+        return settings(source);
+    }
     if let Some(of_file) = error.downcast_ref() {
         return file(of_file).map(str::to_owned);
     }

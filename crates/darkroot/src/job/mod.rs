@@ -88,8 +88,7 @@ pub fn develop_bytes(
     let (input, output) = (&job.input, &job.output);
     refuse_existing(job, settings)?;
     let format = format_of(output, settings);
-    let recipe =
-        settings.resolve(format).map_err(|e| Error::Write { path: output.clone(), reason: e.to_string() })?;
+    let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
     let photo = Photo::open_with(&read()?, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.clone(), source })?;
 
@@ -184,7 +183,7 @@ fn write_file(
     {
         Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
         Failed::Io(e) | Failed::Other(Unwritten::Encode(darkroot_encode::Error::Io(e))) => {
-            Error::write(output, &e)
+            Error::write(output, e)
         }
         Failed::Other(Unwritten::Encode(source)) => Error::Encode { path: output.clone(), source },
         Failed::Other(Unwritten::Cancelled) => Error::Cancelled { path: job.input.clone() },

@@ -5,27 +5,51 @@ use std::path::PathBuf;
 use super::layers::FOLDER_FILE;
 use crate::settings::{Key, NotAValue};
 
+/// Why a recipe cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unreadable {
+    /// Nothing of that name.
+    #[error("there is no such file")]
+    Missing,
+    /// A folder of that name.
+    #[error("it is a folder")]
+    Folder,
+    /// Bytes that are no text.
+    #[error("it is not text in UTF-8")]
+    NotText,
+    /// So large that it is something else.
+    #[error("it is larger than any recipe (1 MB)")]
+    TooLarge,
+    /// Something else.
+    #[error("{message}")]
+    System {
+        /// What the system says.
+        message: String,
+    },
+}
+
 /// Settings that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecipeError {
     /// The file cannot be read.
-    #[error("{path}: the recipe cannot be read: {reason}", path = path.display())]
+    #[error("{path}: the recipe cannot be read: {source}", path = path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
-        reason: String,
+        /// Why.
+        source: Unreadable,
     },
     /// The file is no TOML.
-    #[error("{path}:{line}: this is not TOML (`name = value`, text in quotes): {reason}", path = path.display())]
+    #[error("{path}:{line}: this is not TOML (`name = value`, text in quotes): {message}", path = path.display())]
     Syntax {
         /// The file.
         path: PathBuf,
         /// Its line, from 1.
         line: usize,
-        /// What the reader stumbled over.
-        reason: String,
+        /// What the reader of TOML says.
+        message: String,
     },
     /// A name that is no setting.
     #[error("{path}:{line}: `{name}` is no setting; {}", instead(*nearest), path = path.display())]

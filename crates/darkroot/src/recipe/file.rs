@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
-use super::{Layer, Origin, RecipeError};
+use super::{Layer, Origin, RecipeError, Unreadable};
 use crate::settings::{Key, NotAValue};
 
 /// No recipe is as large as that, in bytes.
@@ -54,19 +54,20 @@ fn text_of(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     std::fs::File::open(path)?.take(LARGEST + 1).read_to_string(&mut text)?;
     if text.len() as u64 > LARGEST {
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, "it is larger than any recipe (1 MB)"));
+        return Err(io::ErrorKind::FileTooLarge.into());
     }
     Ok(text)
 }
 
 fn unreadable(path: &Path, error: &io::Error) -> RecipeError {
-    let reason = match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
-        io::ErrorKind::InvalidData => "it is not text in UTF-8".to_owned(),
-        _ => error.to_string(),
+    let source = match error.kind() {
+        io::ErrorKind::NotFound => Unreadable::Missing,
+        io::ErrorKind::IsADirectory => Unreadable::Folder,
+        io::ErrorKind::InvalidData => Unreadable::NotText,
+        io::ErrorKind::FileTooLarge => Unreadable::TooLarge,
+        _ => Unreadable::System { message: error.to_string() },
     };
-    RecipeError::Read { path: path.to_owned(), reason }
+    RecipeError::Read { path: path.to_owned(), source }
 }
 
 fn parse(path: &Path, text: &str, origin: Origin) -> Result<FolderFile, RecipeError> {
@@ -74,7 +75,7 @@ fn parse(path: &Path, text: &str, origin: Origin) -> Result<FolderFile, RecipeEr
     let table = DeTable::parse(text).map_err(|error| RecipeError::Syntax {
         path: path.to_owned(),
         line: line(error.span().map_or(0, |s| s.start)),
-        reason: error.message().trim().replace('\n', ", "),
+        message: error.message().trim().replace('\n', ", "),
     })?;
     let table = table.get_ref();
     if table.get("format").and_then(|v| v.get_ref().as_str()) == Some("darkroot profile") {

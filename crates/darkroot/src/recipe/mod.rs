@@ -27,6 +27,6 @@ pub mod effective;
 pub use effective::Effective;
 
 pub mod error;
-pub use error::RecipeError;
+pub use error::{RecipeError, Unreadable};
 
 mod file;

@@ -22,7 +22,7 @@ pub(super) fn is_rendered(path: &Path) -> bool {
 pub(super) fn read(path: &Path) -> Result<Mosaic<f32>, Error> {
     let mut reader = image::ImageReader::open(path)
         .and_then(image::ImageReader::with_guessed_format)
-        .map_err(|e| Error::read(path, &e))?;
+        .map_err(|e| Error::read(path, e))?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MOST_PIXELS * 8);
     reader.limits(limits);

@@ -5,7 +5,7 @@ use super::names::Collision;
 /// Why there is no plan.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum PlanError {
+pub enum PlanFault {
     /// Names of outputs.
     #[error(transparent)]
     Naming(#[from] darkroot::NamingError),
