@@ -20,7 +20,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
-/// A folder of real files. Tests that need one are ignored where it is not (`build.rs`).
+/// A folder of real files. Tests that need one are ignored where it is not (`tests/build.rs`).
 pub fn real_files(folder: &str) -> PathBuf {
     root().join(std::env::var_os("DARKROOT_DATA").unwrap()).join(folder)
 }

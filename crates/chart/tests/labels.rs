@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 mod labelled;
 
-/// The folder of labelled charts. The test is ignored where it is not (`build.rs`).
+/// The folder of labelled charts. The test is ignored where it is not (`tests/build.rs`).
 fn folder() -> PathBuf {
     let top = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
     top.join(std::env::var_os("DARKROOT_DATA").unwrap()).join("charts")

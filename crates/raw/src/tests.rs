@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A folder of real test files. Tests that need one are ignored where it is not (`build.rs`).
+/// A folder of real test files. Tests that need one are ignored where it is not (`tests/build.rs`).
 fn data(folder: &str) -> std::path::PathBuf {
     let top = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     top.join(std::env::var_os("DARKROOT_DATA").unwrap()).join(folder)

@@ -8,7 +8,7 @@ use darkroot_colour::illuminant::Illuminant;
 use darkroot_profile::Sensitivities;
 use darkroot_profile::spectra::in_31_channels;
 
-/// The folder of spectra. Tests that need it are ignored where it is not (`build.rs`).
+/// The folder of spectra. Tests that need it are ignored where it is not (`tests/build.rs`).
 pub(super) fn folder() -> PathBuf {
     darkroot_tests::real_files("spectra")
 }

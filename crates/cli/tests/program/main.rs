@@ -56,7 +56,7 @@ fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples").join(name)
 }
 
-/// A folder of real files. Tests that need one are ignored where it is not (`build.rs`).
+/// A folder of real files. Tests that need one are ignored where it is not (`tests/build.rs`).
 fn real_files(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
