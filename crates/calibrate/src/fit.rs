@@ -6,17 +6,13 @@
 //! 4. Each kind of model is fitted to all patches, and to all but one in turn.
 //! 5. The kind with the least error on patches left out is taken, or the one that was asked for.
 
-use darkroot_colour::adaptation::bradford;
-use darkroot_colour::{Spectrum, Vector3, Xyz, white};
-use darkroot_profile::fit::{Fit, FitError, Samples, white_through};
+use darkroot_colour::{Spectrum, Vector3, Xyz};
+use darkroot_profile::fit::{Fit, FitError};
 use darkroot_profile::{Calibration, Kind};
 
+use crate::balanced::Balanced;
 use crate::compare::{self, Compared};
-use crate::patch::Reference;
 use crate::{CrossValidation, JudgedPatch, LightSource, MeasuredPatch};
-
-/// Fewest patches that a calibration can be made of.
-const FEWEST: usize = 6;
 
 /// What a person decides about the fit.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -69,19 +65,6 @@ pub struct Calibrated {
     pub notes: Vec<String>,
 }
 
-/// The patches that may be used.
-///
-/// # Errors
-/// They are too few.
-pub(crate) fn enough(patches: &[MeasuredPatch]) -> Result<Vec<&MeasuredPatch>, CalibrateError> {
-    let usable: Vec<&MeasuredPatch> = patches.iter().filter(|p| p.excluded.is_none()).collect();
-    if usable.len() < FEWEST {
-        let clipped = patches.iter().filter(|p| p.is_clipped()).count();
-        return Err(CalibrateError::TooFewPatches { left: usable.len(), all: patches.len(), clipped });
-    }
-    Ok(usable)
-}
-
 /// Fits every model to the usable patches and takes the best.
 ///
 /// # Errors
@@ -91,44 +74,31 @@ pub fn calibrate(
     patches: &[MeasuredPatch],
     choice: &Choice,
 ) -> Result<Calibrated, CalibrateError> {
-    let usable = enough(patches)?;
     let mut notes = Vec::new();
-    let light_white = light.light.xy.xyz();
-    let reference = Reference::new(patches, light, light_white, &mut notes);
-    let raw = Samples::new(
-        usable.iter().map(|p| p.rgb).collect(),
-        usable.iter().map(|p| reference.xyz(p)).collect(),
-        light_white,
-    )?;
-    let white_rgb = white_through(&raw)?;
-    let balance = |rgb: [f64; 3]| [0, 1, 2].map(|c| rgb[c] / white_rgb[c]);
-    let samples =
-        Samples::new(usable.iter().map(|p| balance(p.rgb)).collect(), raw.xyz().to_vec(), light_white)?;
+    let balanced = Balanced::new(patches, light, &mut notes)?;
+    let Balanced { usable, samples, white_rgb, to_d50, .. } = &balanced;
 
     let spectra: Option<Vec<Spectrum>> = usable.iter().map(|p| p.reference.spectrum()).collect();
-    let mut compared = compare::compare(&samples, spectra.as_deref(), light);
+    let mut compared = compare::compare(samples, spectra.as_deref(), light);
     let places: Vec<usize> = (0..patches.len()).filter(|i| patches[*i].excluded.is_none()).collect();
     for round in &choice.cross_validation {
-        compare::cross_validate(&mut compared, round, &places, &samples)?;
+        compare::cross_validate(&mut compared, round, &places, samples)?;
     }
     for (compared, fit) in &mut compared {
         if let (Ok(figures), Some(fit)) = (&mut compared.result, fit) {
-            *figures = fit.figures(&samples);
+            *figures = fit.figures(samples);
         }
     }
     let (kind, fit) = chosen(&compared, choice.kind)?;
 
-    let figures = fit.figures(&samples);
-    let to_d50 = bradford(light_white, white::D50);
-    let adapted = |c: Xyz| Xyz::from(to_d50 * Vector3::from(c));
-    let model = fit.model.then(&to_d50).rounded();
-    let mut left_out = fit.left_out.iter();
+    let figures = fit.figures(samples);
+    let model = fit.model.then(to_d50).rounded();
+    let mut left_out = fit.left_out.iter().map(|c| Xyz::from(to_d50 * Vector3::from(*c)));
     let judged: Vec<JudgedPatch> = patches
         .iter()
         .map(|p| {
-            let unseen = if p.excluded.is_none() { left_out.next().map(|c| adapted(*c)) } else { None };
-            let rgb = balance(p.rgb);
-            JudgedPatch::new(p, rgb, adapted(reference.xyz(p)), model.xyz(rgb), unseen)
+            let unseen = if p.excluded.is_none() { left_out.next() } else { None };
+            balanced.judged(p, &model, unseen)
         })
         .collect();
     let calibration = Calibration {
@@ -139,7 +109,7 @@ pub fn calibrate(
         patches: judged.iter().filter(|j| j.excluded.is_none()).map(JudgedPatch::for_profile).collect(),
     };
     let compared = compared.into_iter().map(|(c, _)| c).collect();
-    Ok(Calibrated { calibration, compared, white_rgb, patches: judged, notes })
+    Ok(Calibrated { calibration, compared, white_rgb: *white_rgb, patches: judged, notes })
 }
 
 /// The model that was asked for, or the best.

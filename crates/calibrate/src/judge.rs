@@ -2,14 +2,11 @@
 
 use std::fmt;
 
-use darkroot_colour::adaptation::bradford;
 use darkroot_colour::difference::{de2000, de2000_sl1};
-use darkroot_colour::{Vector3, Xyz, white};
-use darkroot_profile::fit::{Samples, white_through};
+use darkroot_colour::{Xyz, white};
 use darkroot_profile::{Calibration, Errors, Model, Profile, Summary};
 
-use crate::fit::enough;
-use crate::patch::Reference;
+use crate::balanced::Balanced;
 use crate::{CalibrateError, JudgedPatch, LightSource, MeasuredPatch};
 
 /// What the patches of a shot say about a profile.
@@ -156,24 +153,8 @@ pub fn by_model(
     patches: &[MeasuredPatch],
     model: &Model,
 ) -> Result<(Vec<JudgedPatch>, Errors), CalibrateError> {
-    let usable = enough(patches)?;
-    let light_white = light.light.xy.xyz();
-    let reference = Reference::new(patches, light, light_white, &mut Vec::new());
-    let raw = Samples::new(
-        usable.iter().map(|p| p.rgb).collect(),
-        usable.iter().map(|p| reference.xyz(p)).collect(),
-        light_white,
-    )?;
-    let white_rgb = white_through(&raw)?;
-    let to_d50 = bradford(light_white, white::D50);
-    let judged: Vec<JudgedPatch> = patches
-        .iter()
-        .map(|p| {
-            let rgb = [0, 1, 2].map(|c| p.rgb[c] / white_rgb[c]);
-            let truth = Xyz::from(to_d50 * Vector3::from(reference.xyz(p)));
-            JudgedPatch::new(p, rgb, truth, model.xyz(rgb), None)
-        })
-        .collect();
+    let balanced = Balanced::new(patches, light, &mut Vec::new())?;
+    let judged: Vec<JudgedPatch> = patches.iter().map(|p| balanced.judged(p, model, None)).collect();
     let used = || judged.iter().filter(|j| j.excluded.is_none());
     let estimates: Vec<Xyz> = used().map(|j| j.corrected).collect();
     let truths: Vec<Xyz> = used().map(|j| j.reference).collect();

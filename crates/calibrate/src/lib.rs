@@ -26,6 +26,7 @@ pub use gates::{Finding, Gate, Verdict};
 
 pub mod series;
 
+mod balanced;
 mod compare;
 pub use compare::{Compared, EXPOSURES};
 
