@@ -5,20 +5,22 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::Slope;
 
-/// Rounds of reweighting.
+/// Rounds of iteratively reweighted least squares.
 const ROUNDS: usize = 8;
 /// Relative residual at which a patch begins to lose weight: no matrix fits saturated colours better than that.
 const SOFT: f64 = 0.05;
-/// Relative errors count, down to this share of the brightest patch: dark patches tell of glare, bright ones of the gain.
+/// Residuals count relative to the light of their patch plus this share of the brightest one. So dark patches determine
+/// the glare and bright ones the gain, and noise in black ones decides nothing.
 const DARKEST: f64 = 0.05;
-/// Chroma of the patches that count more, and how much: what a camera makes of greys does not depend on its colours.
+/// Patches whose chroma is below the first number have the second as weight, others 1: greys look alike to all cameras,
+/// colours do not.
 const NEUTRAL: (f64, f64) = (5.0, 4.0);
 
 /// What one channel saw of a chart: `veil` + `slope` x (a linear combination of a patch's X, Y and Z).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelLight {
-    /// Light that is there without a patch, in the unit of the measurements. Below 0 where the black level that was
-    /// subtracted is too high.
+    /// Stray light: what the channel would record of a perfectly black patch, in the unit of the measurements. Below 0
+    /// where the black level that was subtracted is too high.
     pub veil: f64,
     /// What a perfect white in the middle of the chart would give, without the veil.
     pub white: f64,
@@ -27,11 +29,12 @@ pub struct ChannelLight {
 }
 
 impl ChannelLight {
-    /// The light of one channel, robustly, from the `used` patches; without `sloped` the light is taken for even.
+    /// Fits the light of one channel to the `used` patches, robustly; without `sloped` the light is taken for even.
     /// `expected` is relative to D50. `None` where there are too few patches.
     ///
-    /// The veil is a constant in an affine fit of the channel to X, Y and Z, so colours tell of it as greys do: on 28
-    /// cameras under D50, A and LED-B3 without glare (24 patches) it is within 0.03 % of white (rms), 0.05 % at worst.
+    /// The channel is fitted as a combination of X, Y and Z plus a constant, the veil. So coloured patches tell of the
+    /// veil as well as grey ones. For charts of 24 patches without glare, simulated for 28 cameras under D50, A and
+    /// LED-B3, the veil that is found has an error of 0.03 % of white (root mean square), 0.05 % at worst.
     pub fn of(
         places: &[[f64; 2]],
         measured: &[f64],

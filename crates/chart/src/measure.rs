@@ -11,7 +11,7 @@ use crate::Quad;
 pub(crate) const CLIPPED: f32 = 0.98;
 /// Samples farther from the median than this many standard deviations are dust, glints or dirt.
 const OUTLIER: f64 = 4.0;
-/// Median absolute deviation to standard deviation for normal noise.
+/// Standard deviation of normal noise over its median absolute deviation.
 const MAD_TO_SIGMA: f64 = 1.4826;
 /// Fewest samples of a channel that make a measurement.
 const FEWEST: usize = 9;

@@ -1,8 +1,9 @@
 //! How sharp a shot of a chart is: the width of the edges of its patches, from the samples of the sensor.
 //!
-//! From the middle of a patch to the middle of its neighbour light goes over two edges, patch to gap and gap to patch.
-//! Two Gaussian steps are fitted to that profile: their places are known but for a common shift, their heights and their
-//! common spread are not. So gaps that blur has filled tell as much as open ones.
+//! Between the middles of two neighbouring patches there are two edges: from the patch to the gap and from the gap to
+//! the next patch. Two blurred steps (integrals of a Gaussian) are fitted to the light along that way. The layout gives
+//! the distance between them; their common shift, their heights and their common width are fitted. So gaps that blur
+//! has filled tell as much as open ones.
 
 use darkroot_colour::statistics::median_by;
 use darkroot_photo::Mosaic;
@@ -21,7 +22,7 @@ pub struct EdgeWidth {
     pub patch: f64,
 }
 
-/// From standard deviations of a Gaussian step to its width from 10 to 90 %.
+/// Width of a Gaussian step from 10 to 90 % of its height, over its standard deviation.
 const TEN_TO_NINETY: f64 = 2.563;
 /// The part of a patch's side, about its middle, over which a profile is averaged.
 const BAND: f64 = 0.4;

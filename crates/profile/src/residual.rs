@@ -7,9 +7,9 @@ use crate::model::Part;
 /// Width of the Gaussian kernel, in units of the sphere of [`direction`].
 pub const WIDTH: f64 = 0.2;
 
-/// (r + g + b)/3 times a sum of c_j (k(x, z_j) - k(x, w) k(w, z_j)), where x is the colour's [`direction`], z_j
-/// the centres, w the direction of grey and k a Gaussian of [`WIDTH`]. Zero on the grey axis, homogeneous of
-/// degree one.
+/// A sum of bumps: (r + g + b)/3 times the sum over j of c_j (k(x, z_j) - k(x, w) k(w, z_j)). Here x is the colour's
+/// [`direction`], z_j that of bump j's centre, w that of grey, c_j what the bump adds to XYZ, and k a Gaussian of
+/// [`WIDTH`]. The second product makes the function 0 on the grey axis; it is homogeneous of degree one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Residual {
     centres: Vec<Centre>,

@@ -2,10 +2,10 @@
 
 /// Runs `work` compiled for AVX2 where the processor has it.
 ///
-/// A closure handed to `pulp` itself is called by `FnOnce::call_once`, for most closures a shim that is compiled
-/// for the least processor and too large to be inlined; called by `FnMut` there is none. `work` must be
-/// `#[inline(always)]`, and so must be what it calls. Additions and multiplications are never fused, so the
-/// results are the same on every processor.
+/// `work` and what it calls must be `#[inline(always)]`, so that they become part of the code that is compiled for
+/// AVX2. `pulp` itself takes an `FnOnce`; most closures have a separate function for that trait, which is compiled for
+/// the oldest processor and too large to be inlined. Calling the closure as `FnMut` avoids it. Additions and
+/// multiplications are never fused, so the results are the same on every processor.
 #[inline(always)]
 pub fn vectorised(work: impl FnMut()) {
     struct Work<F>(F);

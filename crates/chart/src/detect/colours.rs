@@ -1,27 +1,29 @@
 //! Whether colours seen are those of a chart, whatever the light, the camera and its tone curve.
 //!
-//! Logarithms of the channels' ratios are explained by those of the reference, logarithms of lightness by ratios and
-//! lightness, both beside a plane of shade over the chart. White balance and exposure are constants, a gamma is a scale,
-//! the overlap of filters a mixture; how much stays unexplained tells a chart from anything else.
+//! Everything is in logarithms, and compared by linear regression. The ratios of the channels (red to green, blue to
+//! green) are regressed on the ratios that the chart should have, the lightness on ratios and lightness, both also on a
+//! plane, which takes up shade over the chart. What a camera may do to colours is then linear: white balance and
+//! exposure add a constant, a gamma is a factor, overlapping filters mix the ratios. The share of the variance that
+//! stays unexplained tells a chart from anything else.
 
 use darkroot_colour::{Lab, RgbSpace, Vector3, white};
 use nalgebra::DMatrix;
 
-/// Constant, across, down; two ratios of channels; lightness.
+/// Terms of the regression: a constant, column and row; two ratios of channels; lightness.
 const TERMS: usize = 6;
-/// The first terms are shade over the chart, and no evidence for it.
+/// So many of the first terms describe shade. What they explain is no evidence for a chart.
 const SHADE: usize = 3;
-/// Ratios of channels are explained by the first terms: by shade and ratios, not by lightness.
+/// So many of the first terms explain the ratios of channels: shade and ratios, not lightness.
 const RATIOS: usize = 5;
 /// Light added before taking logarithms, as a share of the brightest patch: glare and noise hide what is darker.
 const FLOOR: f64 = 0.015;
 
-/// What a chart's colours look like to the test.
+/// The terms of all patches of a chart, prepared for the regression.
 #[derive(Debug, Clone)]
 pub(super) struct Expected {
-    /// Orthonormal columns that span the terms one after another.
+    /// The terms made orthonormal one after another (Q of a QR decomposition): a row for each patch.
     basis: Vec<[f64; TERMS]>,
-    /// From terms to columns: the terms are basis times this upper triangle.
+    /// R of that decomposition, an upper triangle: the terms are `basis` times this.
     triangle: [[f64; TERMS]; TERMS],
 }
 
@@ -37,7 +39,7 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    /// Both together, 0 for a perfect chart, about 0.75 for 24 colours by chance.
+    /// Mean of both: 0 for a perfect chart, about 0.75 for 24 random colours.
     pub(super) fn unexplained(&self) -> f64 {
         0.5 * (self.lightness + self.chroma)
     }

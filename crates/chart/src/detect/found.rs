@@ -11,7 +11,7 @@ pub struct Found {
     pub layout: String,
     /// Outer corners of the corner patches: top left, top right, bottom right, bottom left of the chart as printed.
     pub corners: Quad,
-    /// 0 to 1: how far colours and edges are from what would be refused.
+    /// 0 to 1: 0 for colours and edges that are only just accepted, 1 for perfect ones.
     pub confidence: f64,
     /// Turn of the chart's top edge on the screen, clockwise, -180 to 180.
     pub rotation_degrees: f64,
@@ -25,7 +25,7 @@ pub struct Found {
     pub rows: usize,
     /// The wider gap of a chart that folds.
     pub hinge: Option<Hinge>,
-    /// Distance of the edges seen from where they should be: root of the median of squares, as a share of a patch.
+    /// Distance of the edges that were seen from where they should be: root of the median square, in patches.
     pub edge_error: f64,
     /// Share of the patches' edges that were seen in their places.
     pub edges_seen: f64,
@@ -80,7 +80,7 @@ pub struct Rejected {
 }
 
 impl Rejected {
-    /// When so many patches in rows and columns are like no chart at all.
+    /// For so many flat regions in rows and columns whose colours are those of no known chart.
     pub(super) fn lattice(patches: usize) -> Self {
         let reason = format!(
             "{patches} flat patches lie in rows and columns, but their colours are not those of a known chart that is \

@@ -13,7 +13,7 @@ pub(super) struct Lattice {
     pub(super) members: BTreeMap<(i32, i32), [f64; 2]>,
     /// From column and row to pixels. Rows follow columns clockwise, so nothing is mirrored.
     pub(super) map: Homography,
-    /// Side of a patch over the step from one to the next.
+    /// Side of a patch as a share of the step from one patch to the next.
     pub(super) fill: f64,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Lattice {
 const FEWEST: usize = 7;
 /// Steps from a region to its neighbour, in sides of the region.
 const STEP: [f64; 2] = [0.95, 2.0];
-/// How far from its foretold place a region may lie, as a share of a step.
+/// How far from its predicted place a region may lie, as a share of a step.
 const TOLERANCE: f64 = 0.22;
 /// Neighbours tried as the second region of a lattice.
 const NEIGHBOURS: usize = 5;
@@ -79,7 +79,8 @@ fn neighbours(regions: &[Region], index: &Index, seed: usize) -> Vec<usize> {
     near.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Grows a lattice from two neighbours: each place is foretold from the nearest regions already in it.
+/// Grows a lattice from two neighbours: each further place is predicted from the nearest regions that are in it
+/// already.
 fn grown(regions: &[Region], index: &Index, seed: usize, second: usize) -> BTreeMap<(i32, i32), usize> {
     let u = difference(regions[second].centre, regions[seed].centre);
     let v = quarter_turn(regions[seed].covariance, u);
@@ -140,9 +141,12 @@ fn step(
     None
 }
 
-/// The vector that is a quarter turn clockwise (y down) from `u` where parallelograms of this covariance are squares.
+/// The other side of the square that has `u` as one side, seen in perspective. `[a, b, c]` is the covariance (xx, xy,
+/// yy) of a region that is such a square on the chart: it tells how the square is distorted. The turn is clockwise (y
+/// down).
 fn quarter_turn([a, b, c]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
-    // With the symmetric root S of the covariance: S R S^-1 = C J / sqrt(det C), J the turn in the plane's dual.
+    // With C the covariance and S its symmetric root, S^-1 undoes the distortion. So the turn is S R S^-1 with R a
+    // quarter turn, and that equals C R / sqrt(det C).
     let root = (a * c - b * b).sqrt();
     [(-a * y + b * x) / root, (-b * y + c * x) / root]
 }

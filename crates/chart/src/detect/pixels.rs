@@ -41,7 +41,7 @@ pub(super) struct Reduced {
     pub(super) factor: usize,
 }
 
-/// This share of the pixels counts as lights and reflexes and not as the picture's white.
+/// This share of the pixels, the brightest, counts as lamps and reflections that are brighter than the picture's white.
 const BRIGHTEST: f64 = 0.005;
 
 impl Reduced {

@@ -1,4 +1,5 @@
-//! A lattice read as charts: every layout in every place, turn and mirror image, judged by colours.
+//! Which chart a lattice of regions is: every layout is tried in every place and turn, mirrored too, and judged by its
+//! colours. One such try is a reading of the lattice.
 
 use std::collections::HashMap;
 
@@ -36,12 +37,12 @@ impl Family {
         families
     }
 
-    /// The layout that the others of the family resemble.
+    /// The first layout of the family; the others differ in their gaps only.
     pub(super) fn layout(&self) -> &ChartLayout {
         &self.layouts[0]
     }
 
-    /// Columns' places in steps from one patch to the next: whole numbers but behind a hinge.
+    /// Places of the columns, in steps (from one patch to the next): whole numbers, except behind a hinge.
     pub(super) fn columns(&self) -> Vec<f64> {
         let layout = self.layout();
         (0..layout.columns).map(|c| layout.column_edges(c)[0] / (1.0 + layout.gap)).collect()
@@ -58,7 +59,7 @@ pub(super) struct Candidate {
     /// Columns and rows less one, in steps.
     extent: [f64; 2],
     pub(super) fit: Fit,
-    /// What stays unexplained by the best reading that is another one.
+    /// How much the best of all other readings leaves unexplained. Near to `fit`, the reading is ambiguous.
     pub(super) next: f64,
     pub(super) mirrored: bool,
     patches: usize,
@@ -96,7 +97,8 @@ fn fewest_seen(patches: usize) -> usize {
 const FEWEST_EXPLAINED: f64 = 0.55;
 /// Readings worse than this are not looked at again.
 const HOPELESS: f64 = 0.68;
-/// Turns of the chart against the lattice, and the same of a mirror image: rows of two matrices.
+/// The four turns of the chart against the lattice, then the same of its mirror image: each is a matrix of two rows
+/// that takes a column and row of the chart to those of the lattice.
 const TURNS: [[i32; 4]; 8] = [
     [1, 0, 0, 1],
     [0, -1, 1, 0],
@@ -135,7 +137,8 @@ fn best(cells: &mut Cells, family: usize, known: &Family) -> Option<Candidate> {
     let mut best: Option<Reading> = None;
     let mut next = 1.0f64;
     for (number, turn) in TURNS.into_iter().enumerate() {
-        // Behind a hinge columns lie between the lattice's: each leaf may be the one that the lattice shows.
+        // The columns of a folding chart's two leaves are not whole steps apart, so only those of one leaf can lie on
+        // the lattice's. Either may be that one.
         for leaf in 0..if layout.hinge.is_some() { 2 } else { 1 } {
             let shift = columns[if leaf == 0 { 0 } else { layout.columns - 1 }].fract();
             for origin in origins(cells.lattice, turn, shift, &columns, layout.rows) {
@@ -254,7 +257,7 @@ struct Cells<'a> {
     picture: &'a Reduced,
     lattice: &'a Lattice,
     occupied: Occupied,
-    /// By eighths of a step.
+    /// By place, rounded to eighths of a step.
     seen: HashMap<(i32, i32), Option<[f64; 3]>>,
 }
 

@@ -175,7 +175,7 @@ fn peak(slope: &[f64], spacing: f64, reach: f64) -> Option<(f64, f64)> {
     Some((moment / sum, slope[best]))
 }
 
-/// Fits the map back from pixels to steps and half a patch's size to the edges.
+/// Fits two things to the edges that were seen: the map from pixels to steps, and half the width and height of a patch.
 fn fitted(now: &Refined, edges: &[Edge]) -> Option<Refined> {
     if edges.len() < 24 {
         return None;

@@ -1,8 +1,10 @@
 //! Flat regions of about the shape of a parallelogram: what a patch looks like.
 //!
-//! Pixels join in the sequence of their local contrast, so a region grows until it leaks over its weakest edge; what it
-//! was just before it joined another is looked at. There is no threshold to choose: shade, noise and softness move the
-//! contrast at which a patch is whole, not whether it is (the idea of MSER: Matas et al., BMVC 2002).
+//! Pixels are taken in the sequence of their contrast with their neighbours, the smoothest first, and each is joined to
+//! the regions that it touches. So a region grows over its patch until it leaks over the weakest edge and merges with
+//! another region; its shape is judged just before each merge. No threshold has to be chosen: shade, noise and blur
+//! change the contrast at which a patch is complete, but complete it becomes (the idea of MSER: Matas et al., BMVC
+//! 2002).
 
 use super::pixels::Reduced;
 

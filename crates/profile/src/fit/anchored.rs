@@ -1,9 +1,10 @@
 //! Root polynomials in the neutral-anchored basis, regularised.
 //!
-//! For exponents e that sum to 1 let psi_e = e.rgb - r^e1 g^e2 b^e3, the weighted arithmetic mean of the channels
-//! less their weighted geometric mean. With r, g and b the psi span what the paper's terms span, but psi and its
-//! gradient vanish on the grey axis. So white is exact whatever the coefficients, the linear part alone carries the
-//! greys, and a penalty on the psi coefficients shrinks towards the best white-preserving matrix:
+//! A term of the paper is r^e1 g^e2 b^e3, with exponents e that sum to 1: a weighted geometric mean of the channels.
+//! Here it is replaced by psi_e = e.rgb - r^e1 g^e2 b^e3, the weighted arithmetic mean less the geometric one. Together
+//! with r, g and b these span the same functions, but psi and its gradient are 0 on the grey axis. So white is exact
+//! whatever the coefficients, the linear part alone decides about greys, and a penalty on the coefficients of psi
+//! shrinks the model towards the best white-preserving matrix:
 //!
 //! XYZ = g * white + (r - g) c1 + (b - g) c2 + sum over e of psi_e c_e
 
@@ -15,14 +16,14 @@ use super::plain::{targets, triples};
 use super::{Fit, FitError, Samples};
 use crate::{Kind, Order, RootPolynomial, Term};
 
-/// Luminance below which errors weigh no more than at it: where CIELAB turns linear.
+/// Errors weigh more in the dark, but below this luminance no more than at it: there CIELAB becomes linear.
 const DARKEST: f64 = 0.0089;
 /// Fewest colours for orders 3 and 4.
 const MANY: usize = 20;
-/// Shares of the psi columns' squared length that are tried as ridge. The floor matters: without it leave-one-out
-/// over 24 patches lets single errors of 9 through.
+/// Ridges that are tried, as shares of the squared length of the psi columns. There is no 0 among them: with 24 patches
+/// leave-one-out would choose it at times, and single colours would be off by dE 9.
 const RIDGES: [f64; 7] = [1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0];
-/// Weights of the anchors that are tried.
+/// Weights of the pull at saturated colours (the anchors) that are tried.
 const ANCHORS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 /// A lower order within this factor of the best one is taken.
 const AS_GOOD: f64 = 1.01;

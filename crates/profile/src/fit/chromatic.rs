@@ -95,8 +95,8 @@ fn features(rgb: [f64; 3], centres: &[Vector3]) -> Vec<f64> {
     centres.iter().map(|z| mean * white_exact_kernel(&x, z)).collect()
 }
 
-/// Root of the mean weight of X, Y and Z in CIEDE2000 at each colour, scaled so that a residual of the size of the
-/// colours weighs 1 in the mean.
+/// How much an error in XYZ counts at each colour (root mean square of the weights of X, Y and Z in CIEDE2000), scaled
+/// so that a residual of the size of the colours weighs 1 in the mean.
 fn row_weights(set: &Rendered) -> Vec<f64> {
     let square = |w: &Matrix3| w.norm_squared() / 3.0;
     let squares: Vec<f64> =

@@ -17,7 +17,7 @@ use crate::{HuePlane, Kind};
 const KNOTS: usize = 120;
 /// Exponents of the weights that are tried.
 const EXPONENTS: [i32; 6] = [1, 2, 3, 4, 6, 8];
-/// Weight that the opposite hue keeps, so that every hue has enough colours.
+/// Weight of colours of the opposite hue: not 0, so that every hue has enough colours to fit to.
 const LEAST_WEIGHT: f64 = 1e-4;
 
 /// The best of several exponents by leave-one-out.

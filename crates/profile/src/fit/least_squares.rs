@@ -56,9 +56,9 @@ impl Problem {
         Some(Solution { unknowns, left_out })
     }
 
-    /// Estimates of `others`, a row for each data row, each by the fit without that data row: b M_i with
-    /// M_i = M - R^-1 q_i r_i / (1 - h_i). Blocks of one row only. `None` when the rows do not determine the
-    /// unknowns.
+    /// For each row of `others` its estimate by the fit without the data row of the same number i: b M_i, where b is
+    /// the row and M_i = M - R^-1 q_i r_i / (1 - h_i) are the unknowns of that fit. Blocks of one row only. `None` when
+    /// the rows do not determine the unknowns.
     pub fn left_out_at(&self, others: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let (q, unknowns) = self.factorise()?;
         let residuals = self.targets.rows(0, self.data) - self.rows.rows(0, self.data) * &unknowns;

@@ -1,4 +1,4 @@
-//! What cameras have in common: statistics of their sensitivities, which do not tell the single cameras.
+//! What cameras have in common: statistics of their sensitivities, from which no single camera can be recovered.
 
 use darkroot_colour::Spectrum;
 use darkroot_colour::spectrum::SAMPLES;
@@ -117,7 +117,8 @@ pub fn parse_reflectances(text: &str) -> Option<Vec<(Spectrum, f64)>> {
     text.lines().filter(|l| !l.starts_with('#')).map(row).collect()
 }
 
-/// Reflectances with nothing but their first principal components left: what is common, not what is single.
+/// Reflectances projected on their first principal components: what they have in common stays, single ones are not
+/// told.
 pub fn smoothed(reflectances: &[Spectrum], all: &[Spectrum], most: usize) -> Vec<Spectrum> {
     let vector = |s: &Spectrum| DVector::from_column_slice(&s.0);
     let mean = all.iter().map(vector).sum::<DVector<f64>>() / all.len().max(1) as f64;

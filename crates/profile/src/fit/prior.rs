@@ -1,10 +1,12 @@
-//! What a chart's shot says about a camera's sensitivities, together with what other cameras say.
+//! The camera's sensitivities, estimated from a shot of a chart and from what is known of other cameras.
 //!
-//! Each channel's effective sensitivity e (light times sensitivity, sum 1) has a Gaussian prior: the mean and
-//! covariance over known cameras, and a smooth departure from them, alpha diag(a) K diag(a), with K a Gaussian in
-//! wavelength and a the root mean square of e over the cameras. Patches of known reflectances R give rgb = R e,
-//! with noise and perhaps a gain error and flare that all patches share; white is exact. The posterior mean is the camera as far as
-//! it is known. alpha, the noise and the shared errors are those under which the patches are most likely.
+//! Unknown is each channel's effective sensitivity e: the light times the sensitivity, scaled to the sum 1. Its prior
+//! is Gaussian, with the mean and the covariance over known cameras. A second covariance is added for what is peculiar
+//! to this camera, a smooth departure from all others: alpha diag(a) K diag(a), with K a Gaussian in the distance of
+//! wavelengths and a the root mean square of e over the cameras. The patches, whose reflectances R are known, are
+//! measurements rgb = R e with noise; errors of gain and flare, which all patches share, may be part of the noise.
+//! White counts as exact. The estimate is the posterior mean. alpha, the noise and the shared errors are chosen so that
+//! the patches are most likely (maximum marginal likelihood).
 
 use darkroot_colour::Spectrum;
 use darkroot_colour::spectrum::SAMPLES;
@@ -13,15 +15,15 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::population::{ChannelPopulation, Population};
 use crate::spectra::Effective;
 
-/// Length over which a camera's departure from the others is smooth, nm.
+/// Correlation length of a camera's departure from the others, nm.
 const SMOOTH_NM: f64 = 30.0;
 /// Sizes of that departure that are tried, relative to the sensitivities.
 const DEPARTURES: [f64; 6] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3];
 /// Noise of a patch that is tried, relative to its value.
 const NOISES: [f64; 6] = [0.0005, 0.001, 0.003, 0.01, 0.02, 0.03];
-/// Value below which noise no longer falls with the value.
+/// Noise is proportional to the value of a patch, but never below that of a patch of this value.
 const DARKEST: f64 = 0.01;
-/// Errors that all patches share, as far as they are tried: none, or those of an ordinary shot.
+/// Shared errors of all patches that are tried: none, and those of an ordinary shot.
 const SHARED: [Shared; 2] = [Shared { gain: 0.0, flare: 0.0 }, Shared { gain: 0.02, flare: 0.003 }];
 /// Variance of the white, which is exact.
 const EXACT: f64 = 1e-10;

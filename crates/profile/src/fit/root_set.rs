@@ -1,10 +1,13 @@
 //! A root polynomial of order 4 on a virtual set, in CIEDE2000, that does not fold over.
 //!
-//! In the neutral-anchored basis (see [`super::anchored`]) the fit is linear least squares. Penalties hold the psi
-//! part back: a small ridge, a pull to zero at saturated colours, and its slope at every colour of the set, which
-//! amplifies noise. A model folds where the determinant of its Jacobian changes sign. The determinant, relative to
-//! that of the model's matrix near grey, is kept above a margin over a grid of chromaticities (they stand for all
-//! colours, since the model is homogeneous) by a growing penalty on what it lacks, with Gauss and Newton's method.
+//! In the neutral-anchored basis (see [`super::anchored`]) the fit is linear least squares. Three penalties keep the
+//! psi part small: a ridge on its coefficients, its value at saturated colours, and its slope at every colour of the
+//! set, since slopes amplify noise.
+//!
+//! A model folds where the determinant of its Jacobian changes sign: two camera colours become one. So the determinant,
+//! relative to that of the model's matrix near grey, must stay above a margin. It is looked at over a grid of
+//! chromaticities, which stand for all colours because the model is homogeneous. Where it is below the margin, what is
+//! missing is penalised, with a weight that grows from round to round, by the Gauss-Newton method.
 
 use darkroot_colour::{Matrix3, Vector3, Xyz};
 use nalgebra::{DMatrix, DVector, RowDVector};
@@ -16,8 +19,8 @@ use super::virtual_set::Rendered;
 use crate::{Kind, Model, Order};
 
 const ORDER: Order = Order::Four;
-/// Ridges on the psi coefficients, as shares of the squared length of their columns: the first, and larger ones where
-/// folds will not go.
+/// Ridges on the psi coefficients, as shares of the squared length of their columns. The first is taken, and the next
+/// larger one as long as the model still folds.
 const RIDGES: [f64; 7] = [3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 1e-2];
 /// Weight of the pull of psi to zero at saturated colours, as a share of the data's.
 const ANCHORS: f64 = 1e-4;
@@ -29,7 +32,7 @@ const IDEAL: f64 = 0.003;
 const PLAIN: f64 = 0.1;
 /// Least determinant, relative to the matrix's.
 const MARGIN: f64 = 0.3;
-/// A determinant of this share of the margin is enough.
+/// A determinant that reaches this share of the margin passes.
 const ENOUGH: f64 = 0.5;
 /// Growth of the penalty's weight from round to round, and how many rounds and steps there are at most.
 const GROWTH: f64 = 4.0;
@@ -178,7 +181,7 @@ fn mixed(w: &Matrix3) -> Option<Matrix3> {
     Some(mixed.cholesky()?.l().transpose())
 }
 
-/// A triangle that stands for the slopes of psi at all colours, times the brightness of each.
+/// The slopes of psi at all colours, each times the brightness of its colour, reduced to a triangle.
 fn slopes(rgb: &[[f64; 3]], metric: &[Matrix3], width: usize) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(3 * rgb.len(), width - 2);
     for (i, (rgb, w)) in rgb.iter().zip(metric).enumerate() {
@@ -303,7 +306,7 @@ impl Folds {
         })
     }
 
-    /// The largest share of the psi part that does not fold; the matrix alone never does.
+    /// The largest share of the psi part with which the model does not fold; with none of it, a matrix, it never does.
     fn shrunk(&self, unknowns: DVector<f64>) -> DVector<f64> {
         let scaled = |share: f64| {
             let mut x = unknowns.clone();

@@ -9,7 +9,7 @@ use super::{Fit, FitError, Samples, chromatic, root_set};
 use crate::spectra::Effective;
 use crate::{Kind, Model};
 
-/// Most fits that leaving out takes; with more colours, groups are left out together.
+/// Most fits that a cross-validation makes; where there are more colours, they are left out in groups.
 const MOST_FITS: usize = 24;
 
 /// What the models of the spectral prior know beside the colours.
@@ -56,8 +56,10 @@ pub fn fit(samples: &Samples, knowledge: Knowledge<'_>, kind: Kind) -> Result<Fi
     })
 }
 
-/// Fits a model of the spectral prior to a virtual set through a camera that is known. A surface that the set was
-/// made from is left out together with all that the same surface of the set stands for, one in 24 of these at a time.
+/// Fits a model of the spectral prior to a virtual set, with a camera whose sensitivities are known.
+///
+/// For cross-validation the surfaces of the set are left out in 24 groups. A surface that the set was made from is
+/// estimated by the fit that lacks its representative in the set.
 ///
 /// # Errors
 /// Colours that do not determine the model.
@@ -78,7 +80,7 @@ pub fn fit_known_camera(
     Ok(Fit { model, left_out, settings: String::new() })
 }
 
-/// The model alone, without leaving out.
+/// The model alone, without cross-validation.
 ///
 /// # Errors
 /// Colours that do not determine it.

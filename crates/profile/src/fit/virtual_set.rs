@@ -1,5 +1,5 @@
-//! A large set of colours rendered through a camera that is known only by its posterior: what the models of the
-//! spectral prior are fitted to.
+//! The virtual training set: many reflectances, and the camera RGB and XYZ that they have by computation. The models of
+//! the spectral prior are fitted to it, with the sensitivities that [`super::prior`] estimates.
 
 use darkroot_colour::{Matrix3, Spectrum};
 
@@ -23,7 +23,7 @@ pub struct VirtualSet {
     reflectances: Vec<Spectrum>,
     /// Weight of each real surface; the mean is 1.
     weights: Vec<f64>,
-    /// Which real surface stands for each one that the set was made from.
+    /// For each surface that the set was made from, the index of the real surface here that represents it.
     stands_for: Vec<usize>,
 }
 
@@ -34,14 +34,14 @@ pub struct Rendered {
     pub samples: Samples,
     /// Weight of each real surface.
     pub weights: Vec<f64>,
-    /// What XYZ means in CIEDE2000 at each.
+    /// For each colour, the metric of CIEDE2000: how far off in XYZ is how far off in CIEDE2000.
     pub metric: Vec<Matrix3>,
 }
 
 impl VirtualSet {
-    /// The set that grows from reflectances of real surfaces. Where they are many, the means of alike ones stand for
-    /// them, with the square root of their number as weight: a compromise between the colours that are common in
-    /// the collections and those that are rare in them, which are as common in the world.
+    /// The set made from reflectances of real surfaces. Where there are many, similar ones are replaced by their mean,
+    /// with the square root of their number as weight: a compromise, because collections have many samples of some
+    /// colours and few of others that are as frequent in the world.
     pub fn of(surfaces: &[Spectrum]) -> Self {
         let clusters = clusters(surfaces, CLUSTERS);
         let mut stands_for = vec![0; surfaces.len()];
@@ -55,7 +55,7 @@ impl VirtualSet {
         Self { stands_for, ..Self::weighted(&means, &weights) }
     }
 
-    /// The set that grows from the representative reflectances that are built into the program (`data/README.md`).
+    /// The set made from the representative reflectances that are built into the program (`data/README.md`).
     /// `None` only if their text is broken.
     pub fn builtin() -> Option<Self> {
         let surfaces = parse_reflectances(include_str!("../../data/reflectances.csv"))?;
@@ -63,7 +63,7 @@ impl VirtualSet {
         Some(Self::weighted(&surfaces, &weights))
     }
 
-    /// The set that grows from reflectances as they are, each with a weight.
+    /// The set made from these very reflectances, each with a weight.
     pub fn weighted(surfaces: &[Spectrum], weights: &[f64]) -> Self {
         let clamped = |s: &Spectrum| Spectrum(s.0.map(|v| v.clamp(LEAST, 1.0)));
         let real: Vec<Spectrum> = surfaces.iter().map(clamped).collect();
@@ -76,7 +76,7 @@ impl VirtualSet {
         }
     }
 
-    /// Which real surface of the set stands for each one that it was made from.
+    /// For each surface that the set was made from, the index of the real surface of the set that represents it.
     pub fn stands_for(&self) -> &[usize] {
         &self.stands_for
     }

@@ -12,9 +12,10 @@ const NEUTRAL_Y: f64 = 0.05;
 
 /// Camera RGB of the perfect diffuser, in the units of the samples' RGB, which need not be balanced.
 ///
-/// A linear fit M tells what RGB each neutral patch should have. The median over the neutral patches of what they
-/// have to what they should have corrects what M makes of white: w = median(rgb / M^-1 XYZ) M^-1 white. Taking the
-/// grey patches for neutral would carry their own tint into the profile. Without neutral patches, M alone decides.
+/// M, a matrix fitted to all patches, tells by its inverse which RGB a colour should have. For white that is M^-1
+/// white. It is corrected by the neutral patches: for each channel by the median ratio of the RGB that they have to the
+/// RGB that they should have, so w = median(rgb / M^-1 XYZ) M^-1 white. Simply taking grey patches for neutral would
+/// carry their own slight tint into the profile. Without neutral patches, M alone decides.
 ///
 /// # Errors
 /// Too few colours, or colours that do not determine a matrix.

@@ -19,7 +19,8 @@ impl ResidualPlanes {
         let share = |i: usize| i as f64 / STEPS as f64;
         let at = |i: usize| {
             let (red, blue) = (share(i % (STEPS + 1)), share(i / (STEPS + 1)));
-            // Beyond the triangle of real shares green's root is negative; the function goes on smoothly.
+            // Shares of red and blue that sum to more than 1 belong to no colour: green's would be negative. The
+            // function goes on there smoothly, so interpolation at the border is right.
             let roots = darkroot_colour::Vector3::new(red, 1.0 - red - blue, blue);
             let xyz = part.at(&roots.normalize());
             [xyz.x as f32, xyz.y as f32, xyz.z as f32]

@@ -20,8 +20,8 @@ pub struct Imported {
     pub deviations: Vec<Deviation>,
 }
 
-/// Steps of the shares of roots along each side of the triangle of chromaticities: where bumps stand, and where the
-/// table is looked at.
+/// Steps along each side of the triangle of chromaticities (see [`chromaticities`]): of the grid on which bumps stand,
+/// and of the finer grid on which they are fitted to the DCP's table.
 const CENTRES: usize = 15;
 const PLACES: usize = 60;
 
