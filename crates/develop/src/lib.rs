@@ -38,11 +38,11 @@ pub mod stage;
 
 // What is looked for in the whole frame.
 pub mod frame;
-pub use frame::{Frame, frame};
+pub use frame::Frame;
 pub mod histogram;
 pub use histogram::{Histogram, histogram};
 pub mod noise;
-pub mod saturation;
+mod saturation;
 pub mod survey;
 pub use survey::Survey;
 pub mod white;

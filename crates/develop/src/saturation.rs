@@ -4,11 +4,7 @@
 //! pile up at this ISO. Taken at its word, it leaves clipped highlights unseen and pink. So the picture is asked:
 //! where its brightest samples stand in one heap, there the channel clips.
 
-use darkroot_photo::Capture;
-use rayon::prelude::*;
-
 use crate::highlights::reaches;
-use crate::light::{LinearLight, channels};
 
 /// Light below this share of the white level is never taken for clipped.
 const LOWEST: f32 = 0.8;
@@ -70,26 +66,6 @@ impl BrightSamples {
     pub(crate) fn saturation(&self) -> [f32; 3] {
         common(self.0.each_ref().map(top_of_heap), &self.0)
     }
-}
-
-/// Share of the white level at which red, green and blue of a capture clip.
-pub fn saturation(capture: &Capture, linear: &LinearLight) -> [f32; 3] {
-    let area = capture.active_area;
-    let rows: Vec<usize> = (area.y..area.bottom()).collect();
-    let layout = capture.counts.layout();
-    let parts: Vec<BrightSamples> = rows
-        .par_chunks(64)
-        .map(|rows| {
-            let mut counted = BrightSamples::none();
-            let mut light = vec![0f32; area.width * layout.planes()];
-            for &y in rows {
-                linear.levelled(&capture.counts, area.x, y, &mut light);
-                counted.count(&light, &channels(layout, area.x, y, NO_CHANNEL));
-            }
-            counted
-        })
-        .collect();
-    parts.iter().fold(BrightSamples::none(), BrightSamples::and).saturation()
 }
 
 /// Keeps the heaps that lie at the converter's limit, which is one for all channels: a heap below which another

@@ -9,7 +9,7 @@ use darkroot_photo::{AsShot, Camera, Layout, Orientation, Rect, Size};
 
 use super::rendered;
 use crate::fault::ChartError;
-use crate::{Error, Settings, files};
+use crate::{Error, Photo, Settings, files};
 
 /// Longest side of the picture in which charts are looked for.
 const LONGEST: usize = 2600;
@@ -44,8 +44,9 @@ impl View {
             return Err(Error::chart(path, ChartError::Rendered));
         }
         let bytes = files::read(path)?;
-        let capture = darkroot_raw::decode(&bytes, settings.decoder, &settings.limits)
+        let photo = Photo::open_with(&bytes, settings.decoder, &settings.limits)
             .map_err(|source| Error::Raw { path: path.to_owned(), source })?;
+        let (capture, analysis) = (photo.capture(), photo.analyse_as_asked());
         if matches!(capture.counts.layout(), Layout::Monochrome) {
             return Err(Error::chart(path, ChartError::Monochrome));
         }
@@ -54,14 +55,14 @@ impl View {
         let crop = Rect { x: inner.x - active.x, y: inner.y - active.y, ..inner };
         let seconds = capture.metadata.number(Directory::Exif, tag::EXPOSURE_TIME);
         Ok(Self {
-            frame: darkroot_develop::frame(&capture),
+            frame: analysis.frame(),
             size: capture.orientation.applied_to(crop.size()),
-            matrix: CameraMatrix::of(&capture),
+            matrix: analysis.matrix().cloned(),
             as_shot: match capture.as_shot {
                 Some(AsShot::Neutral(neutral)) => Some(neutral),
                 _ => None,
             },
-            camera: capture.camera,
+            camera: capture.camera.clone(),
             crop,
             orientation: capture.orientation,
             exposure_seconds: seconds.filter(|s| *s > 0.0),
