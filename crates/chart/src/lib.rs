@@ -25,7 +25,7 @@ pub mod windows;
 pub mod builtin_reference;
 
 pub mod detect;
-pub use detect::{Found, Options, Rejected, Search, SearchImage};
+pub use detect::{Found, Options, Refusal, Rejected, Search, SearchImage};
 
 pub mod geometry;
 pub use geometry::{Homography, Quad};

@@ -85,7 +85,7 @@ fn json(file: &Path, found: &FoundCharts) -> serde_json::Value {
         "file": file.display().to_string(),
         "size": [found.size.width, found.size.height],
         "charts": found.search.found.iter().map(chart).collect::<Vec<_>>(),
-        "refused": found.search.rejected.as_ref().map(|r| &r.reason),
+        "refused": found.search.rejected.as_ref().map(|r| r.reason.to_string()),
     })
 }
 

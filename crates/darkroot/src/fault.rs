@@ -1,6 +1,7 @@
 //! What can be wrong with a shot of a chart, a file of spectra, a camera's neutrals. Each message completes "FILE: ".
 
 use darkroot_calibrate::{Gate, ShotError};
+use darkroot_chart::Refusal;
 use darkroot_chart::layout::LayoutError;
 use darkroot_chart::reference::ReferenceError;
 use darkroot_colour::measured::SpectrumError;
@@ -45,7 +46,7 @@ pub enum ChartError {
         /// Title of the chart.
         chart: String,
         /// What spoke against what came nearest.
-        reason: Option<String>,
+        reason: Option<Refusal>,
     },
     /// Corners that make no quadrilateral.
     #[error("the corners are no quadrilateral; give them clockwise from patch 1")]

@@ -64,7 +64,7 @@ fn search(view: &View, layouts: &[ChartLayout]) -> Search {
     search
 }
 
-/// The surest chart of a layout. The reason in words where there is none.
+/// The surest chart of a layout.
 pub(crate) fn best(view: &View, layout: &ChartLayout) -> Result<Place, ChartError> {
     let search = search(view, std::slice::from_ref(layout));
     if let Some(found) = search.found.first() {

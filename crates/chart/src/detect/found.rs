@@ -1,5 +1,6 @@
 //! What a search gives back.
 
+use super::refusal::Refusal;
 use crate::geometry::contains;
 use crate::layout::Hinge;
 use crate::{Homography, Quad};
@@ -73,8 +74,8 @@ pub struct Rejected {
     pub layout: String,
     /// Where it is, when it is anywhere.
     pub corners: Option<Quad>,
-    /// Why it is refused, a sentence without its full stop.
-    pub reason: String,
+    /// Why it is refused.
+    pub reason: Refusal,
     /// How near it came: 1 is enough.
     pub nearness: f64,
 }
@@ -82,16 +83,12 @@ pub struct Rejected {
 impl Rejected {
     /// For so many flat regions in rows and columns whose colours are those of no known chart.
     pub(super) fn lattice(patches: usize) -> Self {
-        let reason = format!(
-            "{patches} flat patches lie in rows and columns, but their colours are not those of a known chart that is \
-             wholly in the picture"
-        );
+        let reason = Refusal::UnknownColours { patches };
         if patches == 0 { Self::nothing() } else { Self { reason, nearness: 0.1, ..Self::nothing() } }
     }
 
     pub(super) fn nothing() -> Self {
-        let reason = "no flat patches lie in rows and columns as on a chart".to_owned();
-        Self { layout: String::new(), corners: None, reason, nearness: 0.0 }
+        Self { layout: String::new(), corners: None, reason: Refusal::NoLattice, nearness: 0.0 }
     }
 }
 

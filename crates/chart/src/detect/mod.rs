@@ -12,6 +12,7 @@ mod lattice;
 mod pixels;
 mod placement;
 mod refine;
+mod refusal;
 mod regions;
 mod verdict;
 
@@ -19,6 +20,7 @@ use rayon::prelude::*;
 
 pub use found::{Found, Rejected, Search};
 pub use pixels::SearchImage;
+pub use refusal::Refusal;
 
 use crate::ChartLayout;
 use pixels::Reduced;

@@ -5,6 +5,7 @@ use super::found::{Found, Rejected};
 use super::pixels::SearchImage;
 use super::placement::{Candidate, Family};
 use super::refine::{Refined, refine};
+use super::refusal::Refusal;
 use crate::geometry::is_convex;
 use crate::{ChartLayout, Homography, Quad};
 
@@ -26,57 +27,41 @@ pub(super) fn judge(
     families: &[Family],
 ) -> Result<Found, Box<Rejected>> {
     let family = &families[candidate.family];
-    let title = family.layout().title.clone();
-    let refuse = |nearness: f64, reason: String| {
+    let chart = family.layout().title.clone();
+    let refuse = |nearness: f64, reason: Refusal| {
         let layout = family.layout().name.clone();
         let corners = Some(candidate.corners());
         Err(Box::new(Rejected { layout, corners, reason, nearness: nearness.min(0.99) }))
     };
     if candidate.mirrored {
-        return refuse(0.8, format!("a {title} would have to be mirrored to look like this"));
+        return refuse(0.8, Refusal::Mirrored { chart });
     }
     let Some(refined) = refine(picture, candidate, family) else {
-        return refuse(
-            0.3,
-            format!("patches like those of a {title} have no edges that agree with its grid"),
-        );
+        return refuse(0.3, Refusal::NoEdges { chart });
     };
     let corners = corners(&refined, family);
     let inside = |p: &[f64; 2]| {
         p[0] > -1.0 && p[1] > -1.0 && p[0] < picture.width as f64 && p[1] < picture.height as f64
     };
     if !is_convex(&corners) || !corners.iter().all(inside) {
-        return refuse(0.4, format!("a {title} would reach beyond the picture"));
+        return refuse(0.4, Refusal::BeyondPicture { chart });
     }
     let Some(fit) = colours(picture, &refined, family) else {
-        return refuse(0.4, format!("a {title} would reach beyond the picture"));
+        return refuse(0.4, Refusal::BeyondPicture { chart });
     };
     if refined.seen < EDGES_SEEN || refined.error > EDGE_ERROR {
-        return refuse(
-            0.6 * refined.seen / EDGES_SEEN,
-            format!(
-                "of the patches' edges of a {title} only {:.0} % are in their places",
-                100.0 * refined.seen
-            ),
-        );
+        return refuse(0.6 * refined.seen / EDGES_SEEN, Refusal::Edges { chart, seen: refined.seen });
     }
     let worst = (fit.lightness / UNEXPLAINED[0]).max(fit.chroma / UNEXPLAINED[1]);
     if worst > 1.0 {
-        return refuse(
-            0.95 / worst,
-            format!(
-                "its colours are not those of a {title}: {:.0} % of lightness and {:.0} % of colour do not fit any \
-                 light and camera",
-                100.0 * fit.lightness,
-                100.0 * fit.chroma
-            ),
-        );
+        let reason = Refusal::Colours { chart, lightness: fit.lightness, colour: fit.chroma };
+        return refuse(0.95 / worst, reason);
     }
     if fit.colourfulness < COLOURFUL {
-        return refuse(0.5, format!("it has too little colour for a {title}"));
+        return refuse(0.5, Refusal::Grey { chart });
     }
     if candidate.next < CLEARLY * candidate.fit.unexplained() {
-        return refuse(0.9, format!("it could be a {title} in more than one way"));
+        return refuse(0.9, Refusal::Ambiguous { chart });
     }
     Ok(found(&refined, family, fit, corners))
 }
