@@ -84,10 +84,10 @@ fn gates(light: &MadeLight) -> Markup {
                 }
                 @for gate in &shot.gates { (row(gate)) }
             }
-            @if !light.gates.is_empty() {
+            @if light.shots.len() > 1 && !light.gates.is_empty() {
                 tr { th colspan="2" { "between the shots" } }
-                @for gate in &light.gates { (row(gate)) }
             }
+            @for gate in &light.gates { (row(gate)) }
         }
     }
 }
@@ -121,6 +121,7 @@ fn swatches(patches: &[JudgedPatch], layout: &ChartLayout) -> Markup {
             @for (k, colour) in colours.iter().enumerate() {
                 rect x=(x + k * THIRD) y=(y) width=(THIRD) height=(SIDE - 20) fill=(colour) {}
             }
+            rect.outline x=(x) y=(y) width=(3 * THIRD) height=(SIDE - 20) {}
             text class=[class] x=(x) y=(y + SIDE - 12) {
                 @match &patch.excluded {
                     Some(reason) => { (reason) }
@@ -171,7 +172,7 @@ fn provenance(made: &MadeProfile) -> Markup {
             h2 { "Where it comes from" }
             table.models {
                 @for (label, value) in rows.iter().filter(|(_, value)| !value.is_empty()) {
-                    tr { td { (label) } td { (value) } }
+                    tr { td { (label) } td.words { (value) } }
                 }
             }
         }

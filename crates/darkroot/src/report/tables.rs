@@ -9,19 +9,26 @@ pub(super) fn models(calibrated: &Calibrated) -> Markup {
     let heads = ["mean", "median", "95&nbsp;%", "max"];
     html! {
         h3 { "Models" }
-        table.models {
-            tr { th { "model" } th colspan="4" { "training" } th colspan="4" { "each patch left out" } th {} }
-            tr { th {} @for head in heads.iter().chain(&heads) { th { (PreEscaped(head)) } } th {} }
-            @for compared in &calibrated.compared {
-                tr class=[chosen(calibrated, compared)] {
-                    td { (compared.kind) }
-                    @match &compared.result {
-                        Ok(figures) => {
-                            (cells(figures.training))
-                            (cells(figures.leave_one_out))
-                            td { (compared.settings) }
+        div.wide {
+            table.models {
+                tr {
+                    th { "model" }
+                    th.group colspan="4" { "training" }
+                    th.group colspan="4" { "each patch left out" }
+                    th {}
+                }
+                tr { th {} @for head in heads.iter().chain(&heads) { th { (PreEscaped(head)) } } th {} }
+                @for compared in &calibrated.compared {
+                    tr class=[chosen(calibrated, compared)] {
+                        td { (compared.kind) }
+                        @match &compared.result {
+                            Ok(figures) => {
+                                (cells(figures.training))
+                                (cells(figures.leave_one_out))
+                                td.words { (compared.settings) }
+                            }
+                            Err(reason) => { td.words colspan="9" { (reason) } }
                         }
-                        Err(reason) => { td colspan="9" { (reason) } }
                     }
                 }
             }
@@ -50,13 +57,15 @@ fn cells(errors: Option<Errors>) -> Markup {
 pub(super) fn exposures(calibrated: &Calibrated) -> Markup {
     html! {
         h3 { "Exposure" }
-        table.models {
-            tr { th { "model" } @for stops in EXPOSURES { th { (format!("{stops:+}")) } } }
-            @for compared in &calibrated.compared {
-                @if let Some(means) = compared.exposures {
-                    tr class=[chosen(calibrated, compared)] {
-                        td { (compared.kind) }
-                        @for mean in means { td { (format!("{mean:.2}")) } }
+        div.wide {
+            table.models {
+                tr { th { "model" } @for stops in EXPOSURES { th { (signed(stops)) } } }
+                @for compared in &calibrated.compared {
+                    @if let Some(means) = compared.exposures {
+                        tr class=[chosen(calibrated, compared)] {
+                            td { (compared.kind) }
+                            @for mean in means { td { (format!("{mean:.2}")) } }
+                        }
                     }
                 }
             }
@@ -66,4 +75,9 @@ pub(super) fn exposures(calibrated: &Calibrated) -> Markup {
              figures of a row are the same."
         }
     }
+}
+
+/// Stops with their sign; 0 has none.
+fn signed(stops: i32) -> String {
+    if stops == 0 { "0".to_owned() } else { format!("{stops:+}") }
 }
