@@ -9,6 +9,8 @@ use crate::survey::{Block, Survey};
 const METERED_GREY: f64 = 0.127;
 /// Luminance that darker blocks count as.
 const DARKEST: f32 = 1e-4;
+/// Luminance that brighter blocks count as.
+const BRIGHTEST: f32 = 1e4;
 const MOST_STOPS: f64 = 5.0;
 /// Of larger pictures about so many blocks are looked at, spread all over: a setting that a person drags must answer at
 /// once.
@@ -42,9 +44,11 @@ fn luminances(blocks: &[&Block], model: &PlaneModel, multipliers: [f32; 3]) -> (
     let (mut x, mut y, mut z) = (plane(0), plane(1), plane(2));
     model.apply([&mut x, &mut y, &mut z]);
     for v in &mut y {
-        *v = v.max(DARKEST);
+        *v = v.clamp(DARKEST, BRIGHTEST);
     }
-    let logs = y.iter().map(|v| f64::from(v.log2())).sum();
+    // One logarithm for the product of several, none of which takes it out of the range of a double.
+    let product = |light: &[f32]| light.iter().map(|v| f64::from(*v)).product::<f64>();
+    let logs = y.chunks(16).map(|light| product(light).log2()).sum();
     (y, logs)
 }
 
