@@ -150,8 +150,9 @@ impl<'a> Render<'a> {
         if out.is_empty() {
             return Ok(out);
         }
-        let bands = out.chunks_mut(3 * self.rect.width * rows.max(1));
-        let places = (self.rect.y..).step_by(rows.max(1));
+        let rows = rows.clamp(1, self.rect.height);
+        let bands = out.chunks_mut(3 * self.rect.width * rows);
+        let places = (self.rect.y..).step_by(rows);
         in_turn(places.zip(bands), || self.scratch(), |scratch, (y, band)| self.band(scratch, y, band))?;
         Ok(out)
     }

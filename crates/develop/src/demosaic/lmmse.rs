@@ -216,17 +216,20 @@ fn estimate(x: &mut [f32], error: &mut [f32], signal: [&[f32]; 9], low: [&[f32];
     let (signal, low) = (signal.map(|s| &s[..n]), low.map(|s| &s[..n]));
     let error = &mut error[..n];
     for i in 0..n {
+        // From the one in the middle, so that what they have in common takes no digits.
+        let middle = low[4][i];
         let (mut sum, mut squares, mut noise) = (0.0, 0.0, 0.0);
         for k in 0..9 {
-            let low = low[k][i];
-            let rest = low - signal[k][i];
-            sum += low;
-            squares += low * low;
+            let spread = low[k][i] - middle;
+            let rest = low[k][i] - signal[k][i];
+            sum += spread;
+            squares += spread * spread;
             noise += rest * rest;
         }
         let mean = sum * (1.0 / 9.0);
         let own = squares - sum * mean;
         let own = if own > 0.0 { own } else { 0.0 };
+        let mean = middle + mean;
         let gain = own / (own + noise + TINY);
         x[i] = mean + gain * (signal[4][i] - mean);
         error[i] = gain * noise;
