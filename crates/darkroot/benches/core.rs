@@ -6,9 +6,10 @@
 #![allow(missing_docs, clippy::expect_used)] // Criterion's macros document nothing; a bench may stop.
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use darkroot::{Cancel, Photo, ProfileStore, Scale, Settings, View};
+use darkroot::{Cancel, Photo, Plan, ProfileStore, Scale, Settings, View};
 use darkroot_photo::{Rect, Size};
 use darkroot_simulate::{Camera, Scene, expose, samples};
 
@@ -39,7 +40,32 @@ fn core(c: &mut Criterion) {
     group.bench_function("1400 x 900 at full scale", |b| {
         b.iter(|| plan.render(part, &Cancel::default()).expect("a picture"));
     });
+    let tile = View::of(Rect { x: 2000, y: 1000, width: 512, height: 512 });
+    group.bench_function("512 x 512 at full scale", |b| {
+        b.iter(|| plan.render(tile, &Cancel::default()).expect("a picture"));
+    });
+    // From the wish to stop, in the middle of the whole picture, until rendering has stopped.
+    group.bench_function("cancelling", |b| {
+        b.iter_custom(|times| (0..times).map(|i| cancelling(&plan, i)).sum());
+    });
     group.finish();
+}
+
+/// Time that a rendering of the whole picture goes on after it was cancelled, some milliseconds after its beginning.
+fn cancelling(plan: &Plan, i: u64) -> Duration {
+    let cancel = Cancel::default();
+    std::thread::scope(|scope| {
+        let rendering = scope.spawn(|| {
+            let cancelled = plan.render(plan.whole(Scale::FULL), &cancel).is_err();
+            (cancelled, Instant::now())
+        });
+        std::thread::sleep(Duration::from_millis(20 + i % 40));
+        let wish = Instant::now();
+        cancel.cancel();
+        let (cancelled, end) = rendering.join().expect("no panic");
+        assert!(cancelled, "the rendering was over before it was cancelled");
+        end - wish
+    })
 }
 
 criterion_group!(benches, core);
