@@ -21,7 +21,7 @@ impl Encoder {
     /// Prepares a curve.
     pub fn new(curve: TransferCurve) -> Self {
         let count = EXPONENTS as usize * SEGMENTS;
-        let knots = (0..count + 1)
+        let knots: Vec<f32> = (0..count + 1)
             .into_par_iter()
             .with_min_len(1024)
             .map(|i| {
@@ -30,30 +30,29 @@ impl Encoder {
                 curve.encode(base * (1.0 + part as f64 / SEGMENTS as f64)) as f32
             })
             .collect();
-        let mut encoder = Self { curve, knots, steps: Steps::NONE };
-        encoder.steps = Steps::of(|linear| encoder.at(linear));
-        encoder
+        let steps = Steps::of(|linear| between(&knots, linear));
+        Self { curve, knots, steps }
     }
+}
 
-    /// Encoded value of linear light of 0..=1; values outside are cut.
-    #[inline(always)]
-    fn at(&self, linear: f32) -> f32 {
-        const FIRST: u32 = (127 - EXPONENTS as u32) << 23;
-        const PIECE_BITS: u32 = 23 - SEGMENTS.trailing_zeros();
-        // `max` makes 0 of a NaN, which `clamp` would keep.
-        let v = f32::min(linear.max(0.0), 1.0);
-        let bits = v.to_bits();
-        if bits < FIRST {
-            return v * (self.knots[0] / f32::from_bits(FIRST));
-        }
-        let place = bits - FIRST;
-        let i = (place >> PIECE_BITS) as usize;
-        let part = (place & ((1 << PIECE_BITS) - 1)) as f32 / (1u32 << PIECE_BITS) as f32;
-        let low = self.knots[i];
-        match self.knots.get(i + 1) {
-            Some(high) => low + (high - low) * part,
-            None => low,
-        }
+/// Encoded value of linear light of 0..=1, between the knots of a curve; values outside are cut.
+#[inline(always)]
+fn between(knots: &[f32], linear: f32) -> f32 {
+    const FIRST: u32 = (127 - EXPONENTS as u32) << 23;
+    const PIECE_BITS: u32 = 23 - SEGMENTS.trailing_zeros();
+    // `max` makes 0 of a NaN, which `clamp` would keep.
+    let v = f32::min(linear.max(0.0), 1.0);
+    let bits = v.to_bits();
+    if bits < FIRST {
+        return v * (knots[0] / f32::from_bits(FIRST));
+    }
+    let place = bits - FIRST;
+    let i = (place >> PIECE_BITS) as usize;
+    let part = (place & ((1 << PIECE_BITS) - 1)) as f32 / (1u32 << PIECE_BITS) as f32;
+    let low = knots[i];
+    match knots.get(i + 1) {
+        Some(high) => low + (high - low) * part,
+        None => low,
     }
 }
 
@@ -73,7 +72,7 @@ impl Sample for u8 {
 impl Sample for u16 {
     #[inline(always)]
     fn of(linear: f32, encoder: &Encoder) -> Self {
-        (encoder.at(linear) * 65535.0 + 0.5) as Self
+        (between(&encoder.knots, linear) * 65535.0 + 0.5) as Self
     }
 }
 
@@ -112,8 +111,6 @@ impl Steps {
     /// Bits of a float that a piece leaves out: 256 pieces an octave, 68 steps in the uppermost one of sRGB.
     const LEFT_OUT: u32 = 15;
     const PIECES: u32 = 1 << (23 - Self::LEFT_OUT);
-
-    const NONE: Self = Self { begins: [0.0; 257], first: 0, steps: Vec::new() };
 
     /// From a curve that is 0 at 0, 1 at 1 and rises.
     fn of(curve: impl Fn(f32) -> f32) -> Self {
@@ -159,7 +156,11 @@ mod tests {
             for i in 0..=100_000u32 {
                 let v = (f64::from(i) / 100_000.0).powi(3) as f32;
                 let exact = space.curve.encode(f64::from(v));
-                assert!((f64::from(encoder.at(v)) - exact).abs() < 0.25 / 65535.0, "{} at {v}", space.name);
+                assert!(
+                    (f64::from(between(&encoder.knots, v)) - exact).abs() < 0.25 / 65535.0,
+                    "{} at {v}",
+                    space.name
+                );
             }
         }
     }
@@ -178,7 +179,12 @@ mod tests {
             let encoder = Encoder::new(space.curve);
             for i in 0..=1_000_000u32 {
                 let v = (f64::from(i) / 1_000_000.0).powi(3) as f32;
-                assert_eq!(u8::of(v, &encoder), (encoder.at(v) * 255.0 + 0.5) as u8, "{} at {v}", space.name);
+                assert_eq!(
+                    u8::of(v, &encoder),
+                    (between(&encoder.knots, v) * 255.0 + 0.5) as u8,
+                    "{} at {v}",
+                    space.name
+                );
             }
         }
     }
@@ -189,7 +195,7 @@ mod tests {
         for (v, expected) in
             [(f32::NAN, 0.0), (-1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (7.0, 1.0), (f32::INFINITY, 1.0)]
         {
-            assert!((encoder.at(v) - expected).abs() < 1e-6, "{v}");
+            assert!((between(&encoder.knots, v) - expected).abs() < 1e-6, "{v}");
             assert_eq!(f32::from(u8::of(v, &encoder)), 255.0 * expected, "{v}");
             assert_eq!(f32::from(u16::of(v, &encoder)), 65535.0 * expected, "{v}");
         }

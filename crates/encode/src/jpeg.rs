@@ -25,15 +25,9 @@ pub(crate) fn write(
     let bands = Bands::of(size, frame.space, options, metadata)?;
     let mut out = InOrder::new(out);
     let parts: Vec<&[u8]> = frame.bytes().chunks(frame.row() * bands.rows).collect();
-    // As many at a time as there are threads: they are written before more are made.
-    let threads = rayon::current_num_threads();
-    for (turn, parts) in parts.chunks(threads).enumerate() {
-        let first = turn * threads;
-        let encode = |(i, part): (usize, &&[u8])| bands.encode(first + i, part);
-        let files: Result<Vec<_>, Error> = parts.par_iter().enumerate().map(encode).collect();
-        for (i, bytes) in files?.into_iter().enumerate() {
-            out.put(first + i, bytes).map_err(Error::Io)?;
-        }
+    let files = parts.par_iter().enumerate().map(|(band, part)| bands.encode(band, part));
+    for (band, bytes) in files.collect::<Result<Vec<_>, Error>>()?.into_iter().enumerate() {
+        out.put(band, bytes).map_err(Error::Io)?;
     }
     bands.end(out)
 }

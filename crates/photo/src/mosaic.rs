@@ -83,6 +83,12 @@ impl Cfa {
         self.filters[(y % self.height) * self.width + x % self.width]
     }
 
+    /// Column and row of the first place with a filter, row by row.
+    pub fn first(&self, filter: Filter) -> Option<(usize, usize)> {
+        let i = self.filters.iter().position(|f| *f == filter)?;
+        Some((i % self.width, i / self.width))
+    }
+
     /// The array as seen from (`x`, `y`) on.
     #[must_use]
     pub fn shifted(&self, x: usize, y: usize) -> Self {

@@ -27,7 +27,7 @@ pub enum Step {
     Decode,
     /// Running the stages.
     Develop,
-    /// Encoding and writing.
+    /// Encoding and writing, of which little is left where a picture is written while it is developed.
     Write,
 }
 
@@ -166,7 +166,7 @@ fn write_in_bands(
     write_file(job, settings, |out| {
         darkroot_encode::write_in_bands(&outline, &settings.encode, metadata, out, |rows, take| {
             plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[u8]| {
-                take(band, samples).map_err(Unwritten::Encode)
+                Ok(take(band, samples)?)
             })
         })
     })
@@ -219,8 +219,7 @@ fn plan(
     store: &ProfileStore,
     recipe: &Recipe,
 ) -> Result<(Plan, Report), Error> {
-    let chosen = store.for_camera(&photo.capture().camera, &settings.profile);
-    let chosen = chosen.map_err(|fault| fault.about(input))?;
+    let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
     let profile = chosen.as_ref().map(|c| c.profile.as_ref());
     let plan = darkroot_develop::plan(&photo.analyse_as_asked(), profile, recipe)
         .map_err(|source| Error::Plan { path: input.to_owned(), source })?;

@@ -28,8 +28,7 @@ pub fn debias(mosaic: &Mosaic<f32>, border: usize, noise: &Noise, picture: &mut 
         return;
     }
     // Periods begin at red samples; the first one may begin one pixel before the picture.
-    let red = (0..4).map(|i| (i % 2, i / 2)).find(|(x, y)| cfa.at(*x, *y) == Filter::Red);
-    let (x0, y0) = red.map_or((0, 0), |(x, y)| ((x + border) % 2, (y + border) % 2));
+    let (x0, y0) = cfa.first(Filter::Red).map_or((0, 0), |(x, y)| ((x + border) % 2, (y + border) % 2));
     let (size, width) = (picture.size(), mosaic.size.width);
     let periods = (size.width + x0).div_ceil(2);
     let mut columns = vec![0f32; 2 * periods + 4];

@@ -39,6 +39,11 @@ const LOW_PASS: [f32; 2 * HALF + 1] = [
 /// right for grey detail; with this nothing is lost there, and colourful detail gains (0.2 dB on the McMaster
 /// pictures).
 const SECOND_DIFFERENCE: f32 = 0.1875;
+/// What is left out on both sides of a row, in pairs of columns: there differences, low-pass and estimates would look
+/// beyond it.
+const DIFFERENCE_MARGIN: usize = 1;
+const LOW_PASS_MARGIN: usize = DIFFERENCE_MARGIN + HALF / 2;
+const ESTIMATE_MARGIN: usize = LOW_PASS_MARGIN + HALF / 2;
 /// Keeps quotients of vanishing variances finite; far below the square of any sample.
 const TINY: f32 = 1e-30;
 
@@ -117,8 +122,8 @@ fn difference_down(out: &mut Row, roots: &Rows, y: usize, greens: usize) {
 #[inline(always)]
 fn difference_along(out: &mut Row, roots: &Row, greens: usize) {
     for (parity, out) in out.columns.iter_mut().enumerate() {
-        let samples = [-2, -1, 0, 1, 2].map(|shift| roots.beside(parity, shift, 1));
-        let inner = 1..out.len() - 1;
+        let samples = [-2, -1, 0, 1, 2].map(|shift| roots.beside(parity, shift, DIFFERENCE_MARGIN));
+        let inner = DIFFERENCE_MARGIN..out.len() - DIFFERENCE_MARGIN;
         difference(&mut out[inner], samples, parity == greens);
     }
 }
@@ -145,8 +150,9 @@ fn low_pass_down(out: &mut Row, differences: &Rows, y: usize) {
 #[inline(always)]
 fn low_pass_along(out: &mut Row, differences: &Row) {
     for (parity, out) in out.columns.iter_mut().enumerate() {
-        let inner = 3..out.len() - 3;
-        low_pass(&mut out[inner], from_fn(|k| differences.beside(parity, k as isize - HALF as isize, 3)));
+        let inner = LOW_PASS_MARGIN..out.len() - LOW_PASS_MARGIN;
+        let beside = |k| differences.beside(parity, k as isize - HALF as isize, LOW_PASS_MARGIN);
+        low_pass(&mut out[inner], from_fn(beside));
     }
 }
 
@@ -177,12 +183,12 @@ impl Estimates {
     #[inline(always)]
     fn along(&mut self, differences: &Row, low: &Row, sites: usize) {
         let [x, error] = &mut self.along;
-        let inner = 5..x.len() - 5;
+        let inner = ESTIMATE_MARGIN..x.len() - ESTIMATE_MARGIN;
         estimate(
             &mut x[inner.clone()],
             &mut error[inner],
-            from_fn(|k| differences.beside(sites, k as isize - HALF as isize, 5)),
-            from_fn(|k| low.beside(sites, k as isize - HALF as isize, 5)),
+            from_fn(|k| differences.beside(sites, k as isize - HALF as isize, ESTIMATE_MARGIN)),
+            from_fn(|k| low.beside(sites, k as isize - HALF as isize, ESTIMATE_MARGIN)),
         );
     }
 

@@ -140,8 +140,7 @@ struct Colour {
 
 impl Colour {
     fn of(cfa: &Cfa, filter: Filter, border: usize, bin: usize) -> Self {
-        let site = (0..4).map(|i| (i % 2, i / 2)).find(|(x, y)| cfa.at(x + border, y + border) == filter);
-        let first = site.unwrap_or((0, 0));
+        let first = cfa.shifted(border, border).first(filter).unwrap_or((0, 0));
         Self { first, across: AxisWeights::of(bin, first.0), down: AxisWeights::of(bin, first.1) }
     }
 }
