@@ -42,6 +42,9 @@ pub use weights::TristimulusWeights;
 
 pub mod statistics;
 
+// No colour, but at the bottom of the house, where every crate with loops over pixels finds it.
+pub mod simd;
+
 mod sprague;
 mod tables;
 

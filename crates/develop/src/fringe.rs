@@ -13,7 +13,7 @@ use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 use crate::demosaic::{signed_sqrt, signed_square};
 use crate::highlights::{CLIPPED, Treatment, reaches};
 use crate::stage::{Stage, WhenSmaller};
-use darkroot_profile::simd::vectorised;
+use darkroot_colour::simd::vectorised;
 
 /// Pixels around the result that are looked at.
 pub const BORDER: usize = 5;

@@ -1,8 +1,8 @@
 //! Gamut: from Rec. 2020 to the primaries of the output.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_colour::{Matrix3, RgbSpace, white};
 use darkroot_photo::{Display, Rgb, Scene, Toned};
-use darkroot_profile::simd::vectorised;
 
 /// Linear Rec. 2020 to the linear RGB of another space, white to white.
 #[derive(Debug, Clone, Copy, PartialEq)]

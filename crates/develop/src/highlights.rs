@@ -9,8 +9,8 @@
 
 use std::array::from_fn;
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
-use darkroot_profile::simd::vectorised;
 
 use crate::stage::{Stage, WhenSmaller};
 

@@ -1,7 +1,7 @@
 //! From counts to linear light: the one way, for every part that looks at a capture.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Capture, Cfa, Correction, Counts, Layout, Rect};
-use darkroot_profile::simd::vectorised;
 
 use crate::corrections::{self, Run, is_supported};
 use crate::level::Levels;

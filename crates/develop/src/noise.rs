@@ -3,8 +3,8 @@
 //! The variance is that of the square roots of balanced samples, the domain of demosaicing. Shot noise is even
 //! there (Anscombe, Biometrika 35, 1948); read noise lets it rise in the shadows.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Capture, Cfa, Layout};
-use darkroot_profile::simd::vectorised;
 use rayon::prelude::*;
 
 use crate::demosaic::{signed_sqrt, signed_square};

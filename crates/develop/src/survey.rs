@@ -1,7 +1,7 @@
 //! One look at the whole frame: mean light of small blocks, where channels clip, and which blocks are clipped.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Capture, Rect};
-use darkroot_profile::simd::vectorised;
 use rayon::prelude::*;
 
 use crate::highlights::CLIPPED;

@@ -6,8 +6,8 @@
 //! of R, G and B, and the middle one keeps its relative place between them: hue in the sense of HSV stays, and
 //! bright colours run to white.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Rgb, Scene, Toned};
-use darkroot_profile::simd::vectorised;
 
 use crate::Look;
 

@@ -39,8 +39,6 @@ pub use kind::Kind;
 pub mod figures;
 pub use figures::{Errors, Figures, Summary};
 
-pub mod simd;
-
 pub mod fit;
 
 pub mod lint;

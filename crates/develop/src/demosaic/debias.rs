@@ -5,8 +5,8 @@
 //! different ones: in deep shadows red and blue come out too dark and green too bright, by some percent. The
 //! difference of the two variances, as measured for the capture at this brightness, is added.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{CameraSpace, Filter, Layout, Mosaic, Rgb};
-use darkroot_profile::simd::vectorised;
 
 use crate::noise::Noise;
 use crate::stage::{Stage, WhenSmaller};

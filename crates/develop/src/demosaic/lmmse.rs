@@ -15,7 +15,7 @@ use darkroot_photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
 
 use super::rows::{Row, Rows};
 use super::{signed_sqrt, signed_square};
-use darkroot_profile::simd::vectorised;
+use darkroot_colour::simd::vectorised;
 
 /// Pixels around the result that the method looks at: 2 for the interpolation, 4 for its low-pass, 4 for the
 /// statistics, 1 for red and blue.

@@ -11,8 +11,8 @@
 //!
 //! and as all of it is linear, interpolation and sums are weights of the sites' differences.
 
+use darkroot_colour::simd::vectorised;
 use darkroot_photo::{CameraSpace, Cfa, Filter, Mosaic, Rgb};
-use darkroot_profile::simd::vectorised;
 
 /// Pixels around a square that have a say in its colours: 4 to the farthest site, 2 around that.
 pub(super) const BORDER: usize = 6;

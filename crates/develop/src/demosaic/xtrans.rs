@@ -12,7 +12,7 @@ use darkroot_photo::{CameraSpace, Mosaic, Rgb};
 
 use super::xtrans_sites::{Each, MODELS, PERIOD, REACH, Site, reached, site_at};
 use super::{signed_sqrt, signed_square};
-use darkroot_profile::simd::vectorised;
+use darkroot_colour::simd::vectorised;
 
 /// Pixels around the result that the method looks at: 4 for the prediction, 4 for its errors.
 pub const BORDER: usize = REACH + HALF;

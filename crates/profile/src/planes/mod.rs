@@ -9,7 +9,7 @@ mod residual;
 mod root;
 
 use crate::Model;
-use crate::simd::vectorised;
+use darkroot_colour::simd::vectorised;
 use hue_plane::HuePlanes;
 use polynomial::PolynomialPlanes;
 use residual::ResidualPlanes;
