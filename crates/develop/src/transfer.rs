@@ -60,12 +60,27 @@ fn between(knots: &[f32], linear: f32) -> f32 {
 pub trait Sample: Copy + Default + Send + Sync {
     /// The sample of linear light of 0..=1. Integers cut what lies outside; floating point is exact and cuts nothing.
     fn of(linear: f32, encoder: &Encoder) -> Self;
+
+    /// Samples of a run of pixels; `out` gets R, G, B of each side by side.
+    #[inline(always)]
+    fn of_run([r, g, b]: [&[f32]; 3], encoder: &Encoder, out: &mut [Self]) {
+        for (out, ((r, g), b)) in out.chunks_exact_mut(3).zip(r.iter().zip(g).zip(b)) {
+            out[0] = Self::of(*r, encoder);
+            out[1] = Self::of(*g, encoder);
+            out[2] = Self::of(*b, encoder);
+        }
+    }
 }
 
 impl Sample for u8 {
     #[inline(always)]
     fn of(linear: f32, encoder: &Encoder) -> Self {
-        encoder.steps.at(linear)
+        encoder.steps.at(encoder.steps.place(linear))
+    }
+
+    #[inline(always)]
+    fn of_run(planes: [&[f32]; 3], encoder: &Encoder, out: &mut [Self]) {
+        encoder.steps.of_run(planes, out);
     }
 }
 
@@ -87,58 +102,85 @@ impl Sample for f32 {
 }
 
 /// Encodes a run of pixels; `out` gets R, G, B of each side by side.
-pub fn encode<T: Sample>([r, g, b]: [&[f32]; 3], encoder: &Encoder, out: &mut [T]) {
-    for (out, ((r, g), b)) in out.chunks_exact_mut(3).zip(r.iter().zip(g).zip(b)) {
-        out[0] = T::of(*r, encoder);
-        out[1] = T::of(*g, encoder);
-        out[2] = T::of(*b, encoder);
-    }
+pub fn encode<T: Sample>(planes: [&[f32]; 3], encoder: &Encoder, out: &mut [T]) {
+    T::of_run(planes, encoder, out);
 }
 
-/// The curve in steps of 8 bits, exactly: the first bits of a floating-point number tell the step but for one, and where
-/// the next one begins decides.
+/// The curve in steps of 8 bits, exactly: the first bits of a floating-point number tell the step but for one, and the other
+/// bits decide.
 #[derive(Debug, Clone)]
 struct Steps {
-    /// Least light of each step, and of one beyond.
-    begins: [f32; 257],
-    /// First piece of the table; light below it is 0.
-    first: u32,
-    /// Step at the beginning of each piece. In no piece do two steps begin.
-    steps: Vec<u8>,
+    /// Bits of the light at which the table begins; below, all is step 0.
+    first: i32,
+    /// For each piece the step at its beginning, shifted, so far below the next step as the piece has light before that one
+    /// begins: adding the bits of light within the piece carries over where it does. In no piece do two steps begin.
+    pieces: Vec<u32>,
 }
 
 impl Steps {
-    /// Bits of a float that a piece leaves out: 256 pieces an octave, 68 steps in the uppermost one of sRGB.
-    const LEFT_OUT: u32 = 15;
-    const PIECES: u32 = 1 << (23 - Self::LEFT_OUT);
+    /// Bits of a float within a piece: 256 pieces an octave, 68 steps in the uppermost one of sRGB.
+    const WITHIN: u32 = 15;
+    const PIECE: u32 = 1 << Self::WITHIN;
+    /// Pixels that are placed before they are looked up.
+    const RUN: usize = 64;
 
     /// From a curve that is 0 at 0, 1 at 1 and rises.
     fn of(curve: impl Fn(f32) -> f32) -> Self {
         let step = |light: f32| (curve(light) * 255.0 + 0.5) as u32;
-        let mut begins = [f32::MAX; 257];
-        begins[0] = 0.0;
-        for k in 1..=255 {
-            // Floats from 0 to 1 are in the order of their bits.
+        // Floats from 0 to 1 are in the order of their bits.
+        let begin = |k: u32| {
             let (mut below, mut at) = (0, 1f32.to_bits());
             while at - below > 1 {
                 let middle = below + (at - below) / 2;
                 if step(f32::from_bits(middle)) >= k { at = middle } else { below = middle }
             }
-            begins[k as usize] = f32::from_bits(at);
+            at
+        };
+        let first = (begin(1) >> Self::WITHIN).saturating_sub(1) << Self::WITHIN;
+        let mut pieces = Vec::new();
+        let mut next = begin(1);
+        for start in (first..=1f32.to_bits()).step_by(Self::PIECE as usize) {
+            let known = step(f32::from_bits(start));
+            while known < 255 && next <= start {
+                next = begin(known + 1);
+            }
+            let before = if known < 255 { (next - start).min(Self::PIECE) } else { Self::PIECE };
+            pieces.push((known << Self::WITHIN) + Self::PIECE - before);
         }
-        let first = begins[1].to_bits() >> Self::LEFT_OUT;
-        let begin = |piece: u32| step(f32::from_bits(piece << Self::LEFT_OUT)) as u8;
-        Self { begins, first, steps: (first..=127 * Self::PIECES).map(begin).collect() }
+        Self { first: first as i32, pieces }
+    }
+
+    /// Where light lies in the table, in bits of a float; 0 for what lies before it, is negative or no number.
+    #[inline(always)]
+    fn place(&self, linear: f32) -> u32 {
+        // `max` makes 0 of a NaN, which `clamp` would keep.
+        let light = f32::min(linear.max(0.0), 1.0);
+        (light.to_bits() as i32 - self.first).max(0) as u32
     }
 
     #[inline(always)]
-    fn at(&self, linear: f32) -> u8 {
-        // `max` makes 0 of a NaN, which `clamp` would keep.
-        let light = f32::min(linear.max(0.0), 1.0);
-        let piece = light.to_bits() >> Self::LEFT_OUT;
-        let i = piece.max(self.first) - self.first;
-        let step = self.steps.get(i as usize).copied().unwrap_or(u8::MAX);
-        step + u8::from(light >= self.begins[usize::from(step) + 1])
+    fn at(&self, place: u32) -> u8 {
+        let piece = self.pieces.get((place >> Self::WITHIN) as usize).copied().unwrap_or(255 << Self::WITHIN);
+        ((piece + (place & (Self::PIECE - 1))) >> Self::WITHIN) as u8
+    }
+
+    #[inline(always)]
+    fn of_run(&self, planes: [&[f32]; 3], out: &mut [u8]) {
+        let mut places = [[0; Self::RUN]; 3];
+        for (run, out) in out.chunks_mut(3 * Self::RUN).enumerate() {
+            let pixels = out.len() / 3;
+            for (places, plane) in places.iter_mut().zip(planes) {
+                for (place, light) in places.iter_mut().zip(&plane[run * Self::RUN..][..pixels]) {
+                    *place = self.place(*light);
+                }
+            }
+            let [r, g, b] = &places;
+            for (out, ((r, g), b)) in out.chunks_exact_mut(3).zip(r.iter().zip(g).zip(b)) {
+                out[0] = self.at(*r);
+                out[1] = self.at(*g);
+                out[2] = self.at(*b);
+            }
+        }
     }
 }
 
