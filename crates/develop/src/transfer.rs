@@ -114,13 +114,15 @@ struct Steps {
     first: i32,
     /// For each piece the step at its beginning, shifted, so far below the next step as the piece has light before that one
     /// begins: adding the bits of light within the piece carries over where it does. In no piece do two steps begin.
-    pieces: Vec<u32>,
+    pieces: Box<[u32; Self::PIECES]>,
 }
 
 impl Steps {
     /// Bits of a float within a piece: 256 pieces an octave, 68 steps in the uppermost one of sRGB.
     const WITHIN: u32 = 15;
     const PIECE: u32 = 1 << Self::WITHIN;
+    /// 32 octaves: no curve's first step begins below 2^-24.
+    const PIECES: usize = 8192;
     /// Pixels that are placed before they are looked up.
     const RUN: usize = 64;
 
@@ -136,16 +138,17 @@ impl Steps {
             }
             at
         };
-        let first = (begin(1) >> Self::WITHIN).saturating_sub(1) << Self::WITHIN;
-        let mut pieces = Vec::new();
+        let last = 1f32.to_bits() >> Self::WITHIN;
+        let first = ((begin(1) >> Self::WITHIN) - 1).max(last + 1 - Self::PIECES as u32) << Self::WITHIN;
+        let mut pieces = Box::new([255 << Self::WITHIN; Self::PIECES]);
         let mut next = begin(1);
-        for start in (first..=1f32.to_bits()).step_by(Self::PIECE as usize) {
+        for (start, piece) in (first..=1f32.to_bits()).step_by(Self::PIECE as usize).zip(&mut *pieces) {
             let known = step(f32::from_bits(start));
             while known < 255 && next <= start {
                 next = begin(known + 1);
             }
             let before = if known < 255 { (next - start).min(Self::PIECE) } else { Self::PIECE };
-            pieces.push((known << Self::WITHIN) + Self::PIECE - before);
+            *piece = (known << Self::WITHIN) + Self::PIECE - before;
         }
         Self { first: first as i32, pieces }
     }
@@ -160,7 +163,7 @@ impl Steps {
 
     #[inline(always)]
     fn at(&self, place: u32) -> u8 {
-        let piece = self.pieces.get((place >> Self::WITHIN) as usize).copied().unwrap_or(255 << Self::WITHIN);
+        let piece = self.pieces[(place >> Self::WITHIN) as usize % Self::PIECES];
         ((piece + (place & (Self::PIECE - 1))) >> Self::WITHIN) as u8
     }
 
