@@ -2,7 +2,7 @@
 
 use darkroot_encode::Format;
 
-use darkroot::settings::Settings;
+use darkroot::settings::{Engine, Settings};
 use darkroot_develop::Bits;
 
 /// What a worker holds besides pictures: program, profiles, stacks, the tiles of one thread.
@@ -10,8 +10,9 @@ pub(crate) const WORKER: u64 = 40 << 20;
 /// Tiles of one more thread.
 const THREAD: u64 = 12 << 20;
 
-/// Bytes that a worker holds at most while it develops a file with this many samples, stored in `stored` bytes of
-/// file. Measured for every format with the operating system's count (a test of the program holds it to that): the file and its samples, then the samples and the picture, then the picture and what its encoder keeps.
+/// Bytes that a worker holds at most while it develops a file of so many bytes and samples. Measured for every format with
+/// the operating system's count (a test of the program holds it to that): the file and its samples, then the samples and the
+/// picture, then the picture and what its encoder keeps.
 pub(crate) fn develop(
     file: u64,
     samples: u64,
@@ -31,6 +32,10 @@ pub(crate) fn develop(
     // flashraw gives 16-bit counts; floating point is kept as such.
     let counts = samples * if float { 4 } else { 2 };
     let decode = file + 2 * counts;
+    if format.takes_bands() && settings.engine == Engine::Darkroot {
+        // A few bands of rows, and what they became.
+        return WORKER + THREAD + decode.max(counts + picture / 16);
+    }
     let render = counts + picture;
     let encode = picture + encoder(format, bits, picture, pixels);
     WORKER + THREAD + decode.max(render).max(encode)
@@ -39,8 +44,8 @@ pub(crate) fn develop(
 /// What an encoder holds beside the picture.
 fn encoder(format: Format, bits: Bits, picture: u64, pixels: u64) -> u64 {
     match format {
-        Format::Jpeg | Format::Tiff => 4 << 20,
-        Format::Png => picture / 2,
+        // Bands that wait for those above them.
+        Format::Jpeg | Format::Png | Format::Tiff => picture / 2,
         Format::Webp => 5 * pixels,
         Format::Avif => 40 * pixels,
         Format::Exr => picture / 8,

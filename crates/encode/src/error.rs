@@ -73,6 +73,10 @@ pub enum Error {
         samples: usize,
     },
 
+    /// The format needs the whole picture at once.
+    #[error("{0} is not written in bands")]
+    NotInBands(Format),
+
     // The fault of the world.
     /// The bytes could not be written, for example because the disk is full.
     #[error("the picture could not be written")]

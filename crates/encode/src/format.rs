@@ -119,7 +119,7 @@ impl Format {
     /// Whether a file of this format can be written while its picture is made: see
     /// [`write_in_bands`](crate::write_in_bands).
     pub fn takes_bands(self) -> bool {
-        self == Self::Jpeg
+        matches!(self, Self::Jpeg | Self::Png | Self::Tiff)
     }
 
     /// Whether the format can hold a picture in that space and say so to whoever reads it.

@@ -34,6 +34,9 @@
 use std::io::{Seek, Write};
 
 use darkroot_photo::{Metadata, Picture};
+use rayon::prelude::*;
+
+use sample::ForSamples;
 
 pub mod format;
 pub use format::Format;
@@ -46,6 +49,9 @@ pub use error::Error;
 
 pub mod bands;
 pub use bands::{Outline, write_in_bands};
+
+pub mod sample;
+pub use sample::Sample;
 
 pub mod exif;
 pub mod icc;
@@ -72,7 +78,7 @@ mod testing;
 ///
 /// [`Error::Io`] when `out` cannot take the bytes: what was written till then is no picture. Everything else is
 /// found before the first byte is written, except [`Error::Encoder`].
-pub fn write<W: Write + Seek>(
+pub fn write<W: Write + Seek + Send>(
     picture: &Picture,
     format: Format,
     options: &Options,
@@ -82,16 +88,39 @@ pub fn write<W: Write + Seek>(
     format.accepts(&picture.space)?;
     options.check()?;
     let frame = format::Frame::of(picture, format)?;
+    if format.takes_bands() {
+        return InBands { picture, format, options, metadata, out }.with_all(&picture.samples);
+    }
     let metadata = exif::of_picture(metadata, picture.size, &picture.space);
     output::buffered(out, |out| match format {
-        Format::Jpeg => jpeg::write(&frame, options, &metadata, out),
-        Format::Png => png::write(&frame, &metadata, out),
-        Format::Tiff => tiff::write(&frame, options, &metadata, out),
         Format::Webp => webp::write(&frame, &metadata, out),
         Format::Avif => avif::write(&frame, options, &metadata, out),
         Format::Exr => exr::write(&frame, &metadata, out),
         Format::Jxl => jxl::write(&frame, &metadata, out),
+        Format::Jpeg | Format::Png | Format::Tiff => Ok(()),
     })
+}
+
+/// Bands of a whole picture, coded by all threads.
+struct InBands<'a, W> {
+    picture: &'a Picture,
+    format: Format,
+    options: &'a Options,
+    metadata: &'a Metadata,
+    out: &'a mut W,
+}
+
+impl<W: Write + Seek + Send> ForSamples for InBands<'_, W> {
+    type Made = Result<(), Error>;
+
+    fn with<T: Sample>(self, samples: &[T]) -> Result<(), Error> {
+        let Self { picture, format, options, metadata, out } = self;
+        let outline = Outline { size: picture.size, space: picture.space };
+        write_in_bands(&outline, format, options, metadata, out, |rows, take| {
+            let bands = samples.par_chunks(3 * picture.size.width * rows).enumerate();
+            bands.try_for_each(|(band, samples)| take(band, samples))
+        })
+    }
 }
 
 #[cfg(test)]

@@ -3,76 +3,84 @@
 use std::io::{Seek, Write};
 
 use darkroot_photo::metadata::{Directory, Value};
-use darkroot_photo::{Metadata, PictureSpace, Samples};
+use darkroot_photo::{Metadata, PictureSpace, Size};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use tiff::decoder::ifd::Entry;
-use tiff::encoder::colortype::{ColorType, RGB8, RGB16, RGB32Float};
 use tiff::encoder::{
-    Compression, DeflateLevel, DirectoryEncoder, Predictor, TiffEncoder, TiffKind, TiffKindBig,
-    TiffKindStandard, TiffValue,
+    DirectoryEncoder, Predictor, Rational, TiffEncoder, TiffKind, TiffKindBig, TiffKindStandard,
 };
-use tiff::tags::{Tag, Type};
+use tiff::tags::{CompressionMethod, PhotometricInterpretation, ResolutionUnit, SampleFormat, Tag, Type};
 use tiff::{Directory as Entries, TiffError, TiffResult};
 
-use crate::format::Frame;
-use crate::{Error, Format, Options, TiffCompression, exif};
+use crate::bands::{self, Outline, Sink, TakeBand};
+use crate::format::profile_of;
+use crate::{Error, Format, Options, Sample, TiffCompression, exif};
 
 const IMAGE_DESCRIPTION: u16 = 0x010e;
 const EXIF_DIRECTORY: u16 = 0x8769;
 const GPS_DIRECTORY: u16 = 0x8825;
 const ICC_PROFILE: u16 = 0x8773;
 
-pub(crate) fn write(
-    frame: &Frame<'_>,
+/// Level of deflate; see PNG's.
+const LEVEL: u32 = 1;
+
+/// Rows of a band, and of each of the strips that it becomes.
+const BAND_ROWS: usize = 96;
+const STRIP_ROWS: usize = 16;
+
+/// Writes a picture of a size that [`Format::sides`] has allowed.
+pub(crate) fn write<T: Sample, W: Write + Seek + Send, E: From<Error>>(
+    outline: &Outline,
     options: &Options,
     metadata: &Metadata,
-    out: &mut (impl Write + Seek),
-) -> Result<(), Error> {
-    let written = if needs_offsets_of_64_bits(frame) {
-        write_kind::<TiffKindBig>(frame, options, metadata, out)
+    out: &mut W,
+    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
+) -> Result<(), E> {
+    if needs_offsets_of_64_bits(outline.size, T::BITS) {
+        write_kind::<TiffKindBig, _, _, _>(outline, options, metadata, out, make)
     } else {
-        write_kind::<TiffKindStandard>(frame, options, metadata, out)
-    };
-    written.map_err(|e| Error::encoder(Format::Tiff)(e.into()))
-}
-
-/// Whether the file might be larger than offsets of 32 bits can say. What deflate may save is not known before.
-fn needs_offsets_of_64_bits(frame: &Frame<'_>) -> bool {
-    // A sixteenth is left for strips that grow, tables and metadata.
-    let bits = u64::from(frame.width) * u64::from(frame.height) * 3 * u64::from(frame.samples.bits());
-    bits / 8 > u64::from(u32::MAX) / 16 * 15
-}
-
-fn write_kind<K: TiffKind>(
-    frame: &Frame<'_>,
-    options: &Options,
-    metadata: &Metadata,
-    out: &mut (impl Write + Seek),
-) -> TiffResult<()> {
-    match frame.samples {
-        Samples::U8(v) => write_samples::<K, RGB8>(frame, v, Predictor::Horizontal, options, metadata, out),
-        Samples::U16(v) => write_samples::<K, RGB16>(frame, v, Predictor::Horizontal, options, metadata, out),
-        Samples::F32(v) => write_samples::<K, RGB32Float>(frame, v, Predictor::None, options, metadata, out),
+        write_kind::<TiffKindStandard, _, _, _>(outline, options, metadata, out, make)
     }
 }
 
-fn write_samples<K: TiffKind, C: ColorType>(
-    frame: &Frame<'_>,
-    samples: &[C::Inner],
-    predictor: Predictor,
+/// Whether the file might be larger than offsets of 32 bits can say. What deflate may save is not known before.
+fn needs_offsets_of_64_bits(size: Size, bits: u8) -> bool {
+    // A sixteenth is left for strips that grow, tables and metadata.
+    let bits = size.width as u64 * size.height as u64 * 3 * u64::from(bits);
+    bits / 8 > u64::from(u32::MAX) / 16 * 15
+}
+
+fn write_kind<K: TiffKind<OffsetType: Send> + Send, T: Sample, W: Write + Seek + Send, E: From<Error>>(
+    outline: &Outline,
     options: &Options,
     metadata: &Metadata,
-    out: &mut (impl Write + Seek),
-) -> TiffResult<()>
-where
-    [C::Inner]: TiffValue,
-{
-    let (compression, predictor) = match options.compression {
-        TiffCompression::None => (Compression::Uncompressed, Predictor::None),
-        TiffCompression::Deflate => (Compression::Deflate(DeflateLevel::Fast), predictor),
+    out: &mut W,
+    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut file = TiffEncoder::<_, K>::new_generic(out).map_err(error)?;
+    let entries = begun(&mut file, outline, options, metadata, T::BITS).map_err(error)?;
+    let strips = Strips { entries, offsets: Vec::new(), lengths: Vec::new() };
+    let code = |_, samples: &[T]| {
+        let strips = samples.chunks(3 * outline.size.width * STRIP_ROWS);
+        strips.map(|strip| coded(strip, outline.size.width, options.compression)).collect()
     };
-    let mut file =
-        TiffEncoder::<_, K>::new_generic(out)?.with_compression(compression).with_predictor(predictor);
+    let strips = bands::code(outline.size, BAND_ROWS, strips, code, make)?;
+    Ok(strips.finish().map_err(error)?)
+}
 
+fn error(e: TiffError) -> Error {
+    Error::encoder(Format::Tiff)(e.into())
+}
+
+/// The directory of the picture, with all entries but those of its strips. The fields of the shot stand in others, before it.
+fn begun<'a, W: Write + Seek, K: TiffKind>(
+    file: &'a mut TiffEncoder<W, K>,
+    outline: &Outline,
+    options: &Options,
+    metadata: &Metadata,
+    bits: u8,
+) -> TiffResult<DirectoryEncoder<'a, W, K>> {
     let mut pointers = Vec::new();
     for (directory, pointer) in [(Directory::Exif, EXIF_DIRECTORY), (Directory::Gps, GPS_DIRECTORY)] {
         if exif::fields(metadata).any(|field| field.directory == directory) {
@@ -82,24 +90,91 @@ where
         }
     }
 
-    let mut image = file.new_image::<C>(frame.width, frame.height)?;
-    let entries = image.encoder();
-    write_fields(entries, metadata, Directory::Image)?;
+    let mut entries = file.image_directory()?;
+    let (compression, predictor) = match options.compression {
+        TiffCompression::None => (CompressionMethod::None, Predictor::None),
+        TiffCompression::Deflate if bits == 32 => (CompressionMethod::Deflate, Predictor::None),
+        TiffCompression::Deflate => (CompressionMethod::Deflate, Predictor::Horizontal),
+    };
+    let format = if bits == 32 { SampleFormat::IEEEFP } else { SampleFormat::Uint };
+    entries.write_tag(Tag::ImageWidth, outline.size.width as u32)?;
+    entries.write_tag(Tag::ImageLength, outline.size.height as u32)?;
+    entries.write_tag(Tag::BitsPerSample, &[u16::from(bits); 3][..])?;
+    entries.write_tag(Tag::SampleFormat, &[format.to_u16(); 3][..])?;
+    entries.write_tag(Tag::SamplesPerPixel, 3_u16)?;
+    entries.write_tag(Tag::PhotometricInterpretation, PhotometricInterpretation::RGB.to_u16())?;
+    entries.write_tag(Tag::Compression, compression.to_u16())?;
+    entries.write_tag(Tag::Predictor, predictor.to_u16())?;
+    entries.write_tag(Tag::RowsPerStrip, STRIP_ROWS as u32)?;
+    // Of no known size on paper.
+    entries.write_tag(Tag::XResolution, Rational { n: 1, d: 1 })?;
+    entries.write_tag(Tag::YResolution, Rational { n: 1, d: 1 })?;
+    entries.write_tag(Tag::ResolutionUnit, ResolutionUnit::None.to_u16())?;
+
+    write_fields(&mut entries, metadata, Directory::Image)?;
     entries.write_tag(Tag::Orientation, 1_u16)?;
     for (pointer, offset) in pointers {
         entries.write_tag(Tag::from_u16_exhaustive(pointer), offset)?;
     }
-    match frame.space {
+    match outline.space {
         PictureSpace::Rgb(_) => {
-            let profile = frame.profile();
-            write_bytes(entries, ICC_PROFILE, Type::UNDEFINED, &profile)?;
+            let profile = profile_of(&outline.space);
+            write_bytes(&mut entries, ICC_PROFILE, Type::UNDEFINED, &profile)?;
         }
         PictureSpace::Camera => {
             let words = description_of_camera_rgb(metadata);
-            write_bytes(entries, IMAGE_DESCRIPTION, Type::ASCII, &closed(&words))?;
+            write_bytes(&mut entries, IMAGE_DESCRIPTION, Type::ASCII, &closed(&words))?;
         }
     }
-    image.write_data(samples)
+    Ok(entries)
+}
+
+/// The bytes of a strip, in the order of the machine, which is that of the file.
+fn coded<T: Sample>(samples: &[T], width: usize, compression: TiffCompression) -> Result<Vec<u8>, Error> {
+    match compression {
+        TiffCompression::None => Ok(bytemuck::cast_slice(samples).to_vec()),
+        TiffCompression::Deflate => {
+            let mut differences = samples.to_vec();
+            for (out, row) in differences.chunks_exact_mut(3 * width).zip(samples.chunks_exact(3 * width)) {
+                for ((out, left), now) in out[3..].iter_mut().zip(row).zip(&row[3..]) {
+                    *out = now.less(*left);
+                }
+            }
+            let mut deflate = ZlibEncoder::new(Vec::new(), Compression::new(LEVEL));
+            deflate
+                .write_all(bytemuck::cast_slice(&differences))
+                .and_then(|()| deflate.finish())
+                .map_err(Error::Io)
+        }
+    }
+}
+
+/// The strips that are written.
+struct Strips<'a, W: Write + Seek, K: TiffKind> {
+    entries: DirectoryEncoder<'a, W, K>,
+    offsets: Vec<K::OffsetType>,
+    lengths: Vec<K::OffsetType>,
+}
+
+impl<W: Write + Seek + Send, K: TiffKind<OffsetType: Send> + Send> Sink for Strips<'_, W, K> {
+    type Coded = Vec<Vec<u8>>;
+
+    fn put(&mut self, coded: Self::Coded) -> Result<(), Error> {
+        for strip in coded {
+            let offset = self.entries.write_data(&strip[..]).map_err(error)?;
+            self.offsets.push(K::convert_offset(offset).map_err(error)?);
+            self.lengths.push(K::convert_offset(strip.len() as u64).map_err(error)?);
+        }
+        Ok(())
+    }
+}
+
+impl<W: Write + Seek, K: TiffKind> Strips<'_, W, K> {
+    fn finish(mut self) -> TiffResult<()> {
+        self.entries.write_tag(Tag::StripOffsets, K::convert_slice(&self.offsets))?;
+        self.entries.write_tag(Tag::StripByteCounts, K::convert_slice(&self.lengths))?;
+        self.entries.finish()
+    }
 }
 
 /// What the numbers of camera RGB are, as no profile says it, before the caption that there was.
@@ -160,6 +235,7 @@ mod tests {
     use super::*;
     use crate::testing::{assert_lossless, decoded, encoded, metadata, picture};
     use darkroot_colour::RgbSpace;
+    use darkroot_photo::Samples;
     use darkroot_photo::metadata::tag;
     use tiff::decoder::Decoder;
 
@@ -194,9 +270,14 @@ mod tests {
     #[test]
     fn samples_and_fields_come_back_from_bigtiff() {
         let picture = picture(600, 400, 16, SRGB);
-        let frame = Frame::of(&picture, Format::Tiff).unwrap();
+        let Samples::U16(samples) = &picture.samples else { panic!() };
+        let outline = Outline { size: picture.size, space: SRGB };
         let mut file = Cursor::new(Vec::new());
-        write_kind::<TiffKindBig>(&frame, &Options::default(), &metadata(), &mut file).unwrap();
+        let make = |rows: usize, take: &TakeBand<'_, u16>| -> Result<(), Error> {
+            samples.chunks(3 * 600 * rows).enumerate().try_for_each(|(i, band)| take(i, band))
+        };
+        write_kind::<TiffKindBig, _, _, _>(&outline, &Options::default(), &metadata(), &mut file, make)
+            .unwrap();
         let file = file.into_inner();
         assert_eq!(&file[..4], b"II\x2b\0");
         assert!(decoded(Format::Tiff, &file).1 == picture.samples);
@@ -208,11 +289,10 @@ mod tests {
 
     #[test]
     fn only_a_file_that_might_reach_4_gb_has_offsets_of_64_bits() {
-        let samples = Samples::U16(Vec::new());
-        let frame = |width, height| Frame { width, height, samples: &samples, space: &SRGB };
-        assert!(!needs_offsets_of_64_bits(&frame(6000, 4000)));
-        assert!(!needs_offsets_of_64_bits(&frame(25_000, 25_000)));
-        assert!(needs_offsets_of_64_bits(&frame(26_000, 26_000)));
+        let needs = |width, height| needs_offsets_of_64_bits(Size { width, height }, 16);
+        assert!(!needs(6000, 4000));
+        assert!(!needs(25_000, 25_000));
+        assert!(needs(26_000, 26_000));
     }
 
     #[test]

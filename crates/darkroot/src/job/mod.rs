@@ -101,8 +101,13 @@ pub fn develop_bytes(
             let (plan, report) = plan(input, &photo, settings, store, &recipe)?;
             let metadata = metadata_for(photo.capture(), &plan.picture_space());
             drop(photo);
-            if format.takes_bands() && recipe.output.bits == Bits::Eight && control.seen.is_none() {
-                write_in_bands(job, settings, &metadata, &plan, cancel)?;
+            if format.takes_bands() && control.seen.is_none() {
+                let write = match recipe.output.bits {
+                    Bits::Eight => write_in_bands::<u8>,
+                    Bits::Sixteen => write_in_bands::<u16>,
+                    Bits::Float => write_in_bands::<f32>,
+                };
+                write(job, settings, format, &metadata, &plan, cancel)?;
                 (report, metadata, None)
             } else {
                 let picture = plan
@@ -155,17 +160,18 @@ impl From<darkroot_encode::Error> for Unwritten {
 }
 
 /// Develops and writes at once: each band goes into the file when it is finished, by the thread that finished it.
-fn write_in_bands(
+fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sample>(
     job: &Job,
     settings: &Settings,
+    format: Format,
     metadata: &Metadata,
     plan: &Plan,
     cancel: &Cancel,
 ) -> Result<(), Error> {
     let outline = Outline { size: plan.size(), space: plan.picture_space() };
     write_file(job, settings, |out| {
-        darkroot_encode::write_in_bands(&outline, &settings.encode, metadata, out, |rows, take| {
-            plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[u8]| {
+        darkroot_encode::write_in_bands(&outline, format, &settings.encode, metadata, out, |rows, take| {
+            plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[T]| {
                 Ok(take(band, samples)?)
             })
         })

@@ -12,8 +12,8 @@ pub(super) struct Bits {
 }
 
 impl Bits {
-    pub(super) fn after(bytes: Vec<u8>) -> Self {
-        Self { bytes, waiting: 0, count: 0 }
+    pub(super) fn with_room_for(bytes: usize) -> Self {
+        Self { bytes: Vec::with_capacity(bytes), waiting: 0, count: 0 }
     }
 
     /// Adds up to 32 bits.

@@ -10,16 +10,14 @@ mod tables;
 mod transform;
 mod units;
 
-use std::collections::BTreeMap;
-use std::io::{self, Write};
-use std::sync::{Mutex, PoisonError};
+use std::io::Write;
 
+use darkroot_photo::Metadata;
 use darkroot_photo::metadata::Directory;
-use darkroot_photo::{Metadata, PictureSpace, Size};
-use rayon::prelude::*;
 
-use crate::format::{Frame, profile_of};
-use crate::{Error, Options, exif};
+use crate::bands::{self, Outline, Sink, TakeBand};
+use crate::format::profile_of;
+use crate::{Error, Options, Sample, exif};
 
 use header::{END, Header};
 use units::{Scan, Subsampling};
@@ -27,117 +25,55 @@ use units::{Scan, Subsampling};
 /// Bytes that a segment has for Exif: 65535, less its length (2) and "Exif\0\0" (6).
 const EXIF_LIMIT: usize = 65_527;
 
-pub(crate) fn write(
-    frame: &Frame<'_>,
-    options: &Options,
-    metadata: &Metadata,
-    out: &mut impl Write,
-) -> Result<(), Error> {
-    let size = Size { width: frame.width as usize, height: frame.height as usize };
-    let bands = Bands::of(size, frame.space, options, metadata)?;
-    let mut out = InOrder::new(out);
-    let parts: Vec<&[u8]> = frame.bytes().chunks(frame.row() * bands.rows).collect();
-    let coded: Vec<Vec<u8>> =
-        parts.par_iter().enumerate().map(|(band, part)| bands.encode(band, part)).collect();
-    for (band, bytes) in coded.into_iter().enumerate() {
-        out.put(band, bytes).map_err(Error::Io)?;
-    }
-    bands.end(out)
-}
-
-/// A JPEG in bands, each coded on its own and parted from the next one by a restart marker (ITU-T T.81, E.1.4), where
-/// prediction begins anew.
-pub(crate) struct Bands {
-    header: Vec<u8>,
-    size: Size,
-    /// Rows of every band but the last.
-    pub(crate) rows: usize,
-    scan: Scan,
-}
-
 /// Rows of a band, unless its units are too many to be counted.
 const BAND_ROWS: usize = 96;
 
-impl Bands {
-    /// Prepares a picture of a size that [`Format::sides`](crate::Format::sides) has allowed.
-    pub(crate) fn of(
-        size: Size,
-        space: &PictureSpace,
-        options: &Options,
-        metadata: &Metadata,
-    ) -> Result<Self, Error> {
-        let subsampling = Subsampling::of(options.subsampling);
-        let units = size.width.div_ceil(subsampling.width());
-        let high = (BAND_ROWS / subsampling.height()).min(usize::from(u16::MAX) / units).max(1);
-        let rows = high * subsampling.height();
-        let header = Header {
-            size,
-            subsampling,
-            quality: options.quality,
-            restart: if size.height > rows { (units * high) as u16 } else { 0 },
-            profile: &profile_of(space),
-            exif: &block_that_fits(metadata)?,
-        };
-        Ok(Self { header: header.bytes(), size, rows, scan: Scan::new(subsampling, options.quality) })
-    }
-
-    /// Codes a band and writes it when those before it are written.
-    pub(crate) fn take<W: Write>(
-        &self,
-        band: usize,
-        samples: &[u8],
-        out: &Mutex<InOrder<W>>,
-    ) -> Result<(), Error> {
-        let bytes = self.encode(band, samples);
-        out.lock().unwrap_or_else(PoisonError::into_inner).put(band, bytes).map_err(Error::Io)
-    }
-
-    /// Writes what stands after the last band.
-    pub(crate) fn end<W: Write>(&self, out: InOrder<W>) -> Result<(), Error> {
-        out.end(self.size.height.div_ceil(self.rows)).map_err(Error::Io)
-    }
-
-    /// The bytes of a band: of the first one with the header of all.
-    fn encode(&self, band: usize, samples: &[u8]) -> Vec<u8> {
-        // A photograph at quality 92 takes a fifth of its samples.
-        let mut bytes = Vec::with_capacity(self.header.len() + samples.len() / 4);
-        if band == 0 {
-            bytes.extend_from_slice(&self.header);
-        }
-        self.scan.encode(samples, self.size.width, bytes)
-    }
+/// Writes a picture of a size that [`Format::sides`](crate::Format::sides) has allowed. Bands are parted by restart markers
+/// (ITU-T T.81, E.1.4), where prediction begins anew.
+pub(crate) fn write<T: Sample, W: Write + Send, E: From<Error>>(
+    outline: &Outline,
+    options: &Options,
+    metadata: &Metadata,
+    out: &mut W,
+    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
+) -> Result<(), E> {
+    let Outline { size, space } = outline;
+    let subsampling = Subsampling::of(options.subsampling);
+    let units = size.width.div_ceil(subsampling.width());
+    let high = (BAND_ROWS / subsampling.height()).min(usize::from(u16::MAX) / units).max(1);
+    let rows = high * subsampling.height();
+    let header = Header {
+        size: *size,
+        subsampling,
+        quality: options.quality,
+        restart: if size.height > rows { (units * high) as u16 } else { 0 },
+        profile: &profile_of(space),
+        exif: &block_that_fits(metadata)?,
+    };
+    out.write_all(&header.bytes()).map_err(Error::Io)?;
+    let scan = Scan::new(subsampling, options.quality);
+    let code = |_, samples: &[T]| Ok(scan.encode(bytemuck::cast_slice(samples), size.width));
+    let scan = bands::code(*size, rows, RestartMarkers { out, next: None }, code, make)?;
+    Ok(scan.out.write_all(&END).map_err(Error::Io)?)
 }
 
-/// Writes bands in their order, with a restart marker between them; those that come too early wait.
-pub(crate) struct InOrder<W> {
-    out: W,
-    next: usize,
-    waiting: BTreeMap<usize, Vec<u8>>,
+/// Bands with a restart marker between two.
+struct RestartMarkers<'a, W> {
+    out: &'a mut W,
+    /// Number of the marker before the next band.
+    next: Option<u8>,
 }
 
-impl<W: Write> InOrder<W> {
-    pub(crate) fn new(out: W) -> Self {
-        Self { out, next: 0, waiting: BTreeMap::new() }
-    }
+impl<W: Write + Send> Sink for RestartMarkers<'_, W> {
+    type Coded = Vec<u8>;
 
-    fn put(&mut self, band: usize, bytes: Vec<u8>) -> io::Result<()> {
-        self.waiting.insert(band, bytes);
-        while let Some(bytes) = self.waiting.remove(&self.next) {
-            if self.next > 0 {
-                // RST0 to RST7 in turn.
-                self.out.write_all(&[0xff, 0xd0 + ((self.next - 1) % 8) as u8])?;
-            }
-            self.out.write_all(&bytes)?;
-            self.next += 1;
+    fn put(&mut self, coded: Vec<u8>) -> Result<(), Error> {
+        if let Some(number) = self.next {
+            // RST0 to RST7 in turn.
+            self.out.write_all(&[0xff, 0xd0 + number]).map_err(Error::Io)?;
         }
-        Ok(())
-    }
-
-    fn end(mut self, bands: usize) -> io::Result<()> {
-        if self.next != bands {
-            return Err(io::Error::other(format!("{} of {bands} bands came", self.next)));
-        }
-        self.out.write_all(&END)
+        self.next = Some(self.next.map_or(0, |number| (number + 1) % 8));
+        self.out.write_all(&coded).map_err(Error::Io)
     }
 }
 

@@ -59,16 +59,16 @@ impl Scan {
         Self { subsampling, luminance: of(Kind::Luminance), chrominance: of(Kind::Chrominance) }
     }
 
-    /// The bits of some rows of R, G, B behind those `bytes`, filled up to whole bytes. Pixels beyond the edge are as those
-    /// at it.
-    pub(super) fn encode(&self, samples: &[u8], width: usize, bytes: Vec<u8>) -> Vec<u8> {
+    /// The bits of some rows of R, G, B, filled up to whole bytes. Pixels beyond the edge are as those at it.
+    pub(super) fn encode(&self, samples: &[u8], width: usize) -> Vec<u8> {
         let rows: Vec<&[u8]> = samples.chunks_exact(3 * width).collect();
         let mut strip = Box::new(Strip {
             components: [[EMPTY; 4]; 3],
             luminance: [Blocks::EMPTY; 4],
             chrominance: [Blocks::EMPTY; 2],
         });
-        let mut bits = Bits::after(bytes);
+        // A photograph at quality 92 takes a fifth of its samples.
+        let mut bits = Bits::with_room_for(samples.len() / 4);
         vectorised(
             #[inline(always)]
             || self.rows(&rows, width, &mut strip, &mut bits),

@@ -1,0 +1,140 @@
+//! PNG: 8 or 16 bits, with the profile in iCCP and Exif in eXIf.
+//!
+//! Each band is filtered and deflated on its own, up to a whole byte (a "sync flush", RFC 1951, 3.2.4), so that bands can be
+//! joined to one stream of zlib (RFC 1950); between two of them only the checksum has to be carried on.
+
+use std::borrow::Cow;
+use std::io::Write;
+
+use darkroot_photo::Metadata;
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
+use png::{BitDepth, ColorType, Encoder, EncodingError, Info, Writer, chunk};
+
+use crate::bands::{self, Outline, Sink, TakeBand};
+use crate::format::profile_of;
+use crate::{Error, Format, Sample, exif};
+
+mod filter;
+
+/// Rows of a band.
+const BAND_ROWS: usize = 96;
+
+/// Level of deflate. Higher ones take five times as long for a file that is one in a hundred smaller: what is
+/// left of a photograph after the filter is mostly noise.
+const LEVEL: u32 = 1;
+
+/// Writes a picture of a size that [`Format::sides`] has allowed.
+pub(crate) fn write<T: Sample, W: Write + Send, E: From<Error>>(
+    outline: &Outline,
+    metadata: &Metadata,
+    out: &mut W,
+    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
+) -> Result<(), E> {
+    let Outline { size, space } = outline;
+    let mut info = Info::with_size(size.width as u32, size.height as u32);
+    info.color_type = ColorType::Rgb;
+    info.bit_depth = if T::BITS == 8 { BitDepth::Eight } else { BitDepth::Sixteen };
+    info.icc_profile = Some(Cow::Owned(profile_of(space)));
+    let block = exif::block(metadata);
+    info.exif_metadata = (!block.is_empty()).then_some(Cow::Owned(block));
+    let mut file = Encoder::with_info(out, info).and_then(Encoder::write_header).map_err(error)?;
+
+    // Deflate with a window of 32 KiB, the fastest level.
+    file.write_chunk(chunk::IDAT, &[0x78, 0x01]).map_err(error)?;
+    let last = size.height.div_ceil(BAND_ROWS) - 1;
+    let code = |band, samples: &[T]| deflated(samples, size.width, band == last).map_err(Error::Io);
+    let stream = bands::code(*size, BAND_ROWS, Stream { file, checksum: 1 }, code, make)?;
+    let mut file = stream.file;
+    file.write_chunk(chunk::IDAT, &stream.checksum.to_be_bytes()).map_err(error)?;
+    Ok(file.finish().map_err(error)?)
+}
+
+fn error(e: EncodingError) -> Error {
+    Error::encoder(Format::Png)(e.into())
+}
+
+/// A band of the stream.
+struct Deflated {
+    bytes: Vec<u8>,
+    /// Of what was deflated.
+    checksum: u32,
+    length: usize,
+}
+
+/// Filters and deflates a band.
+fn deflated<T: Sample>(samples: &[T], width: usize, last: bool) -> std::io::Result<Deflated> {
+    let filtered = filter::band(samples, width);
+    let mut deflate = DeflateEncoder::new(Vec::with_capacity(filtered.len()), Compression::new(LEVEL));
+    deflate.write_all(&filtered)?;
+    let bytes = if last {
+        deflate.finish()?
+    } else {
+        deflate.flush()?;
+        std::mem::take(deflate.get_mut())
+    };
+    let checksum = simd_adler32::adler32(&filtered.as_slice());
+    Ok(Deflated { bytes, checksum, length: filtered.len() })
+}
+
+/// The picture's stream of zlib.
+struct Stream<W: Write> {
+    file: Writer<W>,
+    /// Adler-32 of what has been written.
+    checksum: u32,
+}
+
+impl<W: Write + Send> Sink for Stream<W> {
+    type Coded = Deflated;
+
+    fn put(&mut self, coded: Deflated) -> Result<(), Error> {
+        self.checksum = joined(self.checksum, &coded);
+        self.file.write_chunk(chunk::IDAT, &coded.bytes).map_err(error)
+    }
+}
+
+/// The checksum of what has one and of a band behind it (RFC 1950, 8.2): two sums, the second one of all states of the first.
+fn joined(before: u32, band: &Deflated) -> u32 {
+    const MODULUS: u64 = 65_521;
+    let sums = |checksum: u32| (u64::from(checksum & 0xffff), u64::from(checksum >> 16));
+    let ((a, b), (band_a, band_b)) = (sums(before), sums(band.checksum));
+    // The band's sums began with 1.
+    let sum_a = (a + band_a + MODULUS - 1) % MODULUS;
+    let sum_b = (b + band_b + band.length as u64 % MODULUS * (a + MODULUS - 1)) % MODULUS;
+    (sum_b << 16 | sum_a) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::assert_lossless;
+    use darkroot_colour::RgbSpace;
+    use darkroot_photo::PictureSpace;
+
+    #[test]
+    fn the_checksum_of_two_parts_is_that_of_both() {
+        let bytes: Vec<u8> = (0..200_000u32).map(|i| (i % 1000 * i % 251) as u8).collect();
+        for at in [0, 1, 70_000, 200_000] {
+            let (first, second) = bytes.split_at(at);
+            let band = Deflated {
+                bytes: Vec::new(),
+                checksum: simd_adler32::adler32(&second),
+                length: second.len(),
+            };
+            assert_eq!(
+                joined(simd_adler32::adler32(&first), &band),
+                simd_adler32::adler32(&bytes.as_slice())
+            );
+        }
+    }
+
+    #[test]
+    fn samples_of_8_bits_come_back() {
+        assert_lossless(Format::Png, 8, PictureSpace::Rgb(RgbSpace::SRGB));
+    }
+
+    #[test]
+    fn samples_of_16_bits_come_back() {
+        assert_lossless(Format::Png, 16, PictureSpace::Rgb(RgbSpace::REC2020));
+    }
+}
