@@ -1,5 +1,7 @@
 //! Runs the stages over tiles, in parallel, and puts the finished tiles upright into bands of one picture.
 
+use std::sync::{Mutex, PoisonError};
+
 use darkroot_photo::{CameraSpace, Mosaic, Picture, PictureSpace, Rect, Rgb, Samples, Size};
 
 use crate::demosaic::reduce::{self, Reduction};
@@ -70,7 +72,18 @@ impl Plan {
         take: impl Fn(usize, &[T]) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
         let render = Render::of(self, view, cancel, TILE_COLUMNS.div_ceil(view.scale.bin()));
-        render.bands(rows, &take)
+        let failure = Mutex::new(None);
+        // Inside there is one type of error only, so that the stages are compiled once.
+        let rendered = T::render(&render, rows, &|band, samples| {
+            take(band, samples).map_err(|e| {
+                *failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(e);
+                Cancelled
+            })
+        });
+        match failure.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            Some(e) => Err(e),
+            None => Ok(rendered?),
+        }
     }
 
     /// What the samples of its picture mean.
@@ -100,8 +113,11 @@ impl Plan {
     }
 }
 
+/// Takes a finished band, as [`Plan::render_bands`] says, and may stop the rendering.
+pub(crate) type TakeBand<'a, T> = dyn Fn(usize, &[T]) -> Result<(), Cancelled> + Sync + 'a;
+
 /// One rendering: which rectangle of the upright picture, in tiles of how many columns.
-struct Render<'a> {
+pub struct Render<'a> {
     plan: &'a Plan,
     grid: Grid,
     border: usize,
@@ -158,11 +174,7 @@ impl<'a> Render<'a> {
     }
 
     /// The same, handed on band by band.
-    fn bands<T: Sample, E: From<Cancelled> + Send>(
-        &self,
-        rows: usize,
-        take: &(impl Fn(usize, &[T]) -> Result<(), E> + Sync),
-    ) -> Result<(), E> {
+    pub(crate) fn bands<T: Sample>(&self, rows: usize, take: &TakeBand<'_, T>) -> Result<(), Cancelled> {
         let places = (self.rect.y..self.rect.bottom()).step_by(rows.max(1)).enumerate();
         let scratch = || (self.scratch(), Vec::new());
         in_turn(places, scratch, |(scratch, band), (i, y)| {

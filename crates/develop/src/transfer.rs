@@ -3,6 +3,9 @@
 use darkroot_colour::TransferCurve;
 use rayon::prelude::*;
 
+use crate::render::{Render, TakeBand};
+use crate::view::Cancelled;
+
 /// Smallest exponent of the table: below 2^-40 the curve is a straight line to 0.
 const EXPONENTS: i32 = 40;
 /// Segments per octave.
@@ -57,9 +60,14 @@ fn between(knots: &[f32], linear: f32) -> f32 {
 }
 
 /// A sample as files hold it.
-pub trait Sample: Copy + Default + Send + Sync {
+pub trait Sample: Copy + Default + Send + Sync + sealed::Sealed {
     /// The sample of linear light of 0..=1. Integers cut what lies outside; floating point is exact and cuts nothing.
     fn of(linear: f32, encoder: &Encoder) -> Self;
+
+    /// Runs the stages for samples of this type. It stands here so that they are compiled with this crate, not again with each
+    /// that uses it.
+    #[doc(hidden)]
+    fn render(render: &Render<'_>, rows: usize, take: &TakeBand<'_, Self>) -> Result<(), Cancelled>;
 
     /// Samples of a run of pixels; `out` gets R, G, B of each side by side.
     #[inline(always)]
@@ -73,6 +81,10 @@ pub trait Sample: Copy + Default + Send + Sync {
 }
 
 impl Sample for u8 {
+    fn render(render: &Render<'_>, rows: usize, take: &TakeBand<'_, Self>) -> Result<(), Cancelled> {
+        render.bands(rows, take)
+    }
+
     #[inline(always)]
     fn of(linear: f32, encoder: &Encoder) -> Self {
         encoder.steps.at(encoder.steps.place(linear))
@@ -85,6 +97,10 @@ impl Sample for u8 {
 }
 
 impl Sample for u16 {
+    fn render(render: &Render<'_>, rows: usize, take: &TakeBand<'_, Self>) -> Result<(), Cancelled> {
+        render.bands(rows, take)
+    }
+
     #[inline(always)]
     fn of(linear: f32, encoder: &Encoder) -> Self {
         (between(&encoder.knots, linear) * 65535.0 + 0.5) as Self
@@ -92,6 +108,10 @@ impl Sample for u16 {
 }
 
 impl Sample for f32 {
+    fn render(render: &Render<'_>, rows: usize, take: &TakeBand<'_, Self>) -> Result<(), Cancelled> {
+        render.bands(rows, take)
+    }
+
     #[inline(always)]
     fn of(linear: f32, encoder: &Encoder) -> Self {
         match encoder.curve {
@@ -99,6 +119,13 @@ impl Sample for f32 {
             curve => curve.encode(f64::from(linear)) as Self,
         }
     }
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for u8 {}
+    impl Sealed for u16 {}
+    impl Sealed for f32 {}
 }
 
 /// Encodes a run of pixels; `out` gets R, G, B of each side by side.

@@ -9,6 +9,7 @@ use darkroot_photo::Metadata;
 use ravif::{Encoder, Img, RGB8};
 
 use crate::format::Frame;
+use crate::output::Buffered;
 use crate::{Error, Format, Options, exif};
 
 /// Number of threads, and of tiles that the picture is cut into. It is fixed, as the bytes depend on it.
@@ -18,7 +19,7 @@ pub(crate) fn write(
     frame: &Frame<'_>,
     options: &Options,
     metadata: &Metadata,
-    out: &mut impl Write,
+    out: &mut Buffered<'_, '_>,
 ) -> Result<(), Error> {
     let pixels: Vec<RGB8> = frame.bytes().chunks_exact(3).map(|p| RGB8::new(p[0], p[1], p[2])).collect();
     let mut encoder = Encoder::new()

@@ -2,12 +2,12 @@
 //! and in any order; each is coded by the thread that made it, and written when those above it are written.
 
 use std::collections::BTreeMap;
-use std::io::{self, Seek, Write};
+use std::io;
 use std::sync::{Mutex, PoisonError};
 
 use darkroot_photo::{Metadata, PictureSpace, Size};
 
-use crate::{Error, Format, Options, Sample, exif, jpeg, output, png, tiff};
+use crate::{Error, Format, Options, Out, Sample, exif, jpeg, output, png, tiff};
 
 /// What a picture will be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,14 +28,43 @@ pub type TakeBand<'a, T> = dyn Fn(usize, &[T]) -> Result<(), Error> + Sync + 'a;
 /// # Errors
 /// As [`write`](crate::write()), and those of `make`; [`Error::NotInBands`] for a format for which
 /// [`Format::takes_bands`] is false.
-pub fn write_in_bands<T: Sample, W: Write + Seek + Send, E: From<Error>>(
+pub fn write_in_bands<T: Sample, E: From<Error>>(
     outline: &Outline,
     format: Format,
     options: &Options,
     metadata: &Metadata,
-    out: &mut W,
+    out: &mut dyn Out,
     make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
 ) -> Result<(), E> {
+    let (mut make, mut failure) = (Some(make), None);
+    let written = write_made(outline, format, options, metadata, out, &mut |rows, take| match make
+        .take()
+        .map(|make| make(rows, take))
+    {
+        Some(Err(e)) => {
+            failure = Some(e);
+            Err(Error::Io(io::ErrorKind::Other.into()))
+        }
+        _ => Ok(()),
+    });
+    match failure {
+        Some(e) => Err(e),
+        None => Ok(written?),
+    }
+}
+
+/// Has the bands of a picture made, of so many rows each.
+pub(crate) type MakeBands<'a, T> = dyn FnMut(usize, &TakeBand<'_, T>) -> Result<(), Error> + 'a;
+
+/// As [`write_in_bands`], for one type of error, so that encoders are compiled once.
+fn write_made<T: Sample>(
+    outline: &Outline,
+    format: Format,
+    options: &Options,
+    metadata: &Metadata,
+    out: &mut dyn Out,
+    make: &mut MakeBands<'_, T>,
+) -> Result<(), Error> {
     format.accepts(&outline.space)?;
     options.check()?;
     format.sides(outline.size, T::BITS)?;
@@ -44,7 +73,7 @@ pub fn write_in_bands<T: Sample, W: Write + Seek + Send, E: From<Error>>(
         Format::Jpeg => jpeg::write(outline, options, &metadata, out, make),
         Format::Png => png::write(outline, &metadata, out, make),
         Format::Tiff => tiff::write(outline, options, &metadata, out, make),
-        Format::Webp | Format::Avif | Format::Exr | Format::Jxl => Err(Error::NotInBands(format).into()),
+        Format::Webp | Format::Avif | Format::Exr | Format::Jxl => Err(Error::NotInBands(format)),
     })
 }
 
@@ -58,13 +87,13 @@ pub(crate) trait Sink: Send {
 }
 
 /// Has bands made, coded and put into `sink`, which it gives back.
-pub(crate) fn code<T, S: Sink, E: From<Error>>(
+pub(crate) fn code<T, S: Sink>(
     size: Size,
     rows: usize,
     sink: S,
     code: impl Fn(usize, &[T]) -> Result<S::Coded, Error> + Sync,
-    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
-) -> Result<S, E> {
+    make: &mut MakeBands<'_, T>,
+) -> Result<S, Error> {
     let in_order = Mutex::new(InOrder { sink, next: 0, waiting: BTreeMap::new() });
     make(rows, &|band, samples| {
         let coded = code(band, samples)?;
@@ -74,7 +103,7 @@ pub(crate) fn code<T, S: Sink, E: From<Error>>(
     let bands = size.height.div_ceil(rows);
     if in_order.next != bands {
         let missing = format!("{} of {bands} bands came", in_order.next);
-        return Err(Error::Io(io::Error::other(missing)).into());
+        return Err(Error::Io(io::Error::other(missing)));
     }
     Ok(in_order.sink)
 }
@@ -162,7 +191,7 @@ mod tests {
         for format in Format::ALL.into_iter().filter(|format| format.takes_bands()) {
             let mut out = Cursor::new(Vec::new());
             let made: Result<(), Error> =
-                write_in_bands::<u8, _, _>(&outline, format, &options, &metadata(), &mut out, |_, _| Ok(()));
+                write_in_bands::<u8, _>(&outline, format, &options, &metadata(), &mut out, |_, _| Ok(()));
             assert!(matches!(made, Err(Error::Io(_))), "{format}");
         }
     }
@@ -174,7 +203,7 @@ mod tests {
         for format in [Format::Webp, Format::Jxl, Format::Avif] {
             let mut out = Cursor::new(Vec::new());
             let made: Result<(), Error> =
-                write_in_bands::<u8, _, _>(&outline, format, &options, &metadata(), &mut out, |_, _| Ok(()));
+                write_in_bands::<u8, _>(&outline, format, &options, &metadata(), &mut out, |_, _| Ok(()));
             assert!(matches!(made, Err(Error::NotInBands(f)) if f == format));
         }
     }

@@ -3,8 +3,6 @@
 //! Exif has no place in it. What OpenEXR has attributes for is written: owner, date, exposure time, aperture,
 //! ISO speed and software; camera and lens stand in the comments.
 
-use std::io::{Seek, Write};
-
 use darkroot_photo::metadata::{Directory, tag};
 use darkroot_photo::{Metadata, PictureSpace, Samples};
 use exr::meta::attribute::Chromaticities;
@@ -14,13 +12,10 @@ use exr::prelude::{
 };
 
 use crate::format::Frame;
+use crate::output::Buffered;
 use crate::{Error, Format};
 
-pub(crate) fn write(
-    frame: &Frame<'_>,
-    metadata: &Metadata,
-    out: &mut (impl Write + Seek),
-) -> Result<(), Error> {
+pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut Buffered<'_, '_>) -> Result<(), Error> {
     let samples: &[f32] = match frame.samples {
         Samples::F32(v) => v,
         // OpenEXR is written with no other samples, and Frame::of lets none through.

@@ -15,9 +15,10 @@ use zune_core::options::EncoderOptions;
 use zune_jpegxl::JxlSimpleEncoder;
 
 use crate::format::Frame;
+use crate::output::Buffered;
 use crate::{Error, Format, exif};
 
-pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut impl Write) -> Result<(), Error> {
+pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut Buffered<'_, '_>) -> Result<(), Error> {
     let codestream = codestream(frame)?;
     write_container(&codestream, frame.samples.bits(), &exif::block(metadata), out).map_err(Error::Io)
 }

@@ -31,8 +31,6 @@
 //! **What it does not do:** it opens no file, changes no number of the picture, and converts between neither
 //! colour spaces nor sample types; `develop` makes the picture as the file wants it.
 
-use std::io::{Seek, Write};
-
 use darkroot_photo::{Metadata, Picture};
 use rayon::prelude::*;
 
@@ -52,6 +50,8 @@ pub use bands::{Outline, write_in_bands};
 
 pub mod sample;
 pub use sample::Sample;
+
+pub use output::Out;
 
 pub mod exif;
 pub mod icc;
@@ -78,12 +78,12 @@ mod testing;
 ///
 /// [`Error::Io`] when `out` cannot take the bytes: what was written till then is no picture. Everything else is
 /// found before the first byte is written, except [`Error::Encoder`].
-pub fn write<W: Write + Seek + Send>(
+pub fn write(
     picture: &Picture,
     format: Format,
     options: &Options,
     metadata: &Metadata,
-    out: &mut W,
+    out: &mut dyn Out,
 ) -> Result<(), Error> {
     format.accepts(&picture.space)?;
     options.check()?;
@@ -102,15 +102,15 @@ pub fn write<W: Write + Seek + Send>(
 }
 
 /// Bands of a whole picture, coded by all threads.
-struct InBands<'a, W> {
+struct InBands<'a> {
     picture: &'a Picture,
     format: Format,
     options: &'a Options,
     metadata: &'a Metadata,
-    out: &'a mut W,
+    out: &'a mut dyn Out,
 }
 
-impl<W: Write + Seek + Send> ForSamples for InBands<'_, W> {
+impl ForSamples for InBands<'_> {
     type Made = Result<(), Error>;
 
     fn with<T: Sample>(self, samples: &[T]) -> Result<(), Error> {

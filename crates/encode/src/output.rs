@@ -4,17 +4,22 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
 use crate::Error;
 
+/// Where the bytes of a file go.
+pub trait Out: Write + Seek + Send {}
+
+impl<T: Write + Seek + Send + ?Sized> Out for T {}
+
 /// A writer that keeps the first error of the one below.
 ///
 /// Encoders turn an error of their output into one of their own, and some lose its kind on the way ([`png`],
 /// [`exr`] and others each do it differently). What went wrong is kept here, so that a caller can tell a full
 /// disk from anything else.
-pub(crate) struct Output<'a, W> {
-    out: &'a mut W,
+pub(crate) struct Output<'a> {
+    out: &'a mut dyn Out,
     failure: Option<io::Error>,
 }
 
-impl<W> Output<'_, W> {
+impl Output<'_> {
     /// Keeps the error and hands the encoder a copy of its kind.
     fn note<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
         result.map_err(|error| {
@@ -27,7 +32,7 @@ impl<W> Output<'_, W> {
     }
 }
 
-impl<W: Write> Write for Output<'_, W> {
+impl Write for Output<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let result = self.out.write(bytes);
         self.note(result)
@@ -39,7 +44,7 @@ impl<W: Write> Write for Output<'_, W> {
     }
 }
 
-impl<W: Seek> Seek for Output<'_, W> {
+impl Seek for Output<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let result = self.out.seek(to);
         self.note(result)
@@ -47,21 +52,21 @@ impl<W: Seek> Seek for Output<'_, W> {
 }
 
 /// What the encoders of this crate write to.
-pub(crate) type Buffered<'a, 'b, W> = BufWriter<&'a mut Output<'b, W>>;
+pub(crate) type Buffered<'a, 'b> = BufWriter<&'a mut Output<'b>>;
 
 /// Runs `encode` on a buffer before `out`, and flushes it. An error of `out` comes back as [`Error::Io`],
 /// whatever the encoder made of it.
-pub(crate) fn buffered<W: Write + Seek, E: From<Error>>(
-    out: &mut W,
-    encode: impl FnOnce(&mut Buffered<'_, '_, W>) -> Result<(), E>,
-) -> Result<(), E> {
+pub(crate) fn buffered(
+    out: &mut dyn Out,
+    encode: impl FnOnce(&mut Buffered<'_, '_>) -> Result<(), Error>,
+) -> Result<(), Error> {
     let mut output = Output { out, failure: None };
     let mut buffer = BufWriter::with_capacity(1 << 17, &mut output);
-    let result = encode(&mut buffer).and_then(|()| buffer.flush().map_err(|e| Error::Io(e).into()));
+    let result = encode(&mut buffer).and_then(|()| buffer.flush().map_err(Error::Io));
     // Dropping the buffer would try to write the rest of a file that has failed already.
     let _ = buffer.into_parts();
     match output.failure.take() {
-        Some(error) => Err(Error::Io(error).into()),
+        Some(error) => Err(Error::Io(error)),
         None => result,
     }
 }

@@ -13,8 +13,9 @@ use tiff::encoder::{
 use tiff::tags::{CompressionMethod, PhotometricInterpretation, ResolutionUnit, SampleFormat, Tag, Type};
 use tiff::{Directory as Entries, TiffError, TiffResult};
 
-use crate::bands::{self, Outline, Sink, TakeBand};
+use crate::bands::{self, MakeBands, Outline, Sink};
 use crate::format::profile_of;
+use crate::output::Buffered;
 use crate::{Error, Format, Options, Sample, TiffCompression, exif};
 
 const IMAGE_DESCRIPTION: u16 = 0x010e;
@@ -30,17 +31,17 @@ const BAND_ROWS: usize = 96;
 const STRIP_ROWS: usize = 16;
 
 /// Writes a picture of a size that [`Format::sides`] has allowed.
-pub(crate) fn write<T: Sample, W: Write + Seek + Send, E: From<Error>>(
+pub(crate) fn write<T: Sample>(
     outline: &Outline,
     options: &Options,
     metadata: &Metadata,
-    out: &mut W,
-    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
-) -> Result<(), E> {
+    out: &mut Buffered<'_, '_>,
+    make: &mut MakeBands<'_, T>,
+) -> Result<(), Error> {
     if needs_offsets_of_64_bits(outline.size, T::BITS) {
-        write_kind::<TiffKindBig, _, _, _>(outline, options, metadata, out, make)
+        write_kind::<TiffKindBig, _, _>(outline, options, metadata, out, make)
     } else {
-        write_kind::<TiffKindStandard, _, _, _>(outline, options, metadata, out, make)
+        write_kind::<TiffKindStandard, _, _>(outline, options, metadata, out, make)
     }
 }
 
@@ -51,13 +52,13 @@ fn needs_offsets_of_64_bits(size: Size, bits: u8) -> bool {
     bits / 8 > u64::from(u32::MAX) / 16 * 15
 }
 
-fn write_kind<K: TiffKind<OffsetType: Send> + Send, T: Sample, W: Write + Seek + Send, E: From<Error>>(
+fn write_kind<K: TiffKind<OffsetType: Send> + Send, T: Sample, W: Write + Seek + Send>(
     outline: &Outline,
     options: &Options,
     metadata: &Metadata,
     out: &mut W,
-    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
-) -> Result<(), E> {
+    make: &mut MakeBands<'_, T>,
+) -> Result<(), Error> {
     let mut file = TiffEncoder::<_, K>::new_generic(out).map_err(error)?;
     let entries = begun(&mut file, outline, options, metadata, T::BITS).map_err(error)?;
     let strips = Strips { entries, offsets: Vec::new(), lengths: Vec::new() };
@@ -66,7 +67,7 @@ fn write_kind<K: TiffKind<OffsetType: Send> + Send, T: Sample, W: Write + Seek +
         strips.map(|strip| coded(strip, outline.size.width, options.compression)).collect()
     };
     let strips = bands::code(outline.size, BAND_ROWS, strips, code, make)?;
-    Ok(strips.finish().map_err(error)?)
+    strips.finish().map_err(error)
 }
 
 fn error(e: TiffError) -> Error {
@@ -233,6 +234,7 @@ mod tests {
     use std::io::Cursor;
 
     use super::*;
+    use crate::bands::TakeBand;
     use crate::testing::{assert_lossless, decoded, encoded, metadata, picture};
     use darkroot_colour::RgbSpace;
     use darkroot_photo::Samples;
@@ -273,10 +275,10 @@ mod tests {
         let Samples::U16(samples) = &picture.samples else { panic!() };
         let outline = Outline { size: picture.size, space: SRGB };
         let mut file = Cursor::new(Vec::new());
-        let make = |rows: usize, take: &TakeBand<'_, u16>| -> Result<(), Error> {
+        let mut make = |rows: usize, take: &TakeBand<'_, u16>| -> Result<(), Error> {
             samples.chunks(3 * 600 * rows).enumerate().try_for_each(|(i, band)| take(i, band))
         };
-        write_kind::<TiffKindBig, _, _, _>(&outline, &Options::default(), &metadata(), &mut file, make)
+        write_kind::<TiffKindBig, _, _>(&outline, &Options::default(), &metadata(), &mut file, &mut make)
             .unwrap();
         let file = file.into_inner();
         assert_eq!(&file[..4], b"II\x2b\0");

@@ -1,15 +1,14 @@
 //! WebP: lossless, with the profile in ICCP and Exif in EXIF. The lossy kind would need a library in C.
 
-use std::io::Write;
-
 use darkroot_photo::Metadata;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
 use crate::format::Frame;
+use crate::output::Buffered;
 use crate::{Error, Format, exif};
 
-pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut impl Write) -> Result<(), Error> {
+pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut Buffered<'_, '_>) -> Result<(), Error> {
     let failed = Error::encoder(Format::Webp);
     let mut encoder = WebPEncoder::new_lossless(out);
     encoder.set_icc_profile(frame.profile()).map_err(|e| failed(e.into()))?;

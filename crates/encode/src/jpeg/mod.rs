@@ -15,8 +15,9 @@ use std::io::Write;
 use darkroot_photo::Metadata;
 use darkroot_photo::metadata::Directory;
 
-use crate::bands::{self, Outline, Sink, TakeBand};
+use crate::bands::{self, MakeBands, Outline, Sink};
 use crate::format::profile_of;
+use crate::output::Buffered;
 use crate::{Error, Options, Sample, exif};
 
 use header::{END, Header};
@@ -30,13 +31,13 @@ const BAND_ROWS: usize = 96;
 
 /// Writes a picture of a size that [`Format::sides`](crate::Format::sides) has allowed. Bands are parted by restart markers
 /// (ITU-T T.81, E.1.4), where prediction begins anew.
-pub(crate) fn write<T: Sample, W: Write + Send, E: From<Error>>(
+pub(crate) fn write<T: Sample>(
     outline: &Outline,
     options: &Options,
     metadata: &Metadata,
-    out: &mut W,
-    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
-) -> Result<(), E> {
+    out: &mut Buffered<'_, '_>,
+    make: &mut MakeBands<'_, T>,
+) -> Result<(), Error> {
     let Outline { size, space } = outline;
     let subsampling = Subsampling::of(options.subsampling);
     let units = size.width.div_ceil(subsampling.width());
@@ -54,7 +55,7 @@ pub(crate) fn write<T: Sample, W: Write + Send, E: From<Error>>(
     let scan = Scan::new(subsampling, options.quality);
     let code = |_, samples: &[T]| Ok(scan.encode(bytemuck::cast_slice(samples), size.width));
     let scan = bands::code(*size, rows, RestartMarkers { out, next: None }, code, make)?;
-    Ok(scan.out.write_all(&END).map_err(Error::Io)?)
+    scan.out.write_all(&END).map_err(Error::Io)
 }
 
 /// Bands with a restart marker between two.

@@ -11,8 +11,9 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use png::{BitDepth, ColorType, Encoder, EncodingError, Info, Writer, chunk};
 
-use crate::bands::{self, Outline, Sink, TakeBand};
+use crate::bands::{self, MakeBands, Outline, Sink};
 use crate::format::profile_of;
+use crate::output::Buffered;
 use crate::{Error, Format, Sample, exif};
 
 mod filter;
@@ -25,12 +26,12 @@ const BAND_ROWS: usize = 96;
 const LEVEL: u32 = 1;
 
 /// Writes a picture of a size that [`Format::sides`] has allowed.
-pub(crate) fn write<T: Sample, W: Write + Send, E: From<Error>>(
+pub(crate) fn write<T: Sample>(
     outline: &Outline,
     metadata: &Metadata,
-    out: &mut W,
-    make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
-) -> Result<(), E> {
+    out: &mut Buffered<'_, '_>,
+    make: &mut MakeBands<'_, T>,
+) -> Result<(), Error> {
     let Outline { size, space } = outline;
     let mut info = Info::with_size(size.width as u32, size.height as u32);
     info.color_type = ColorType::Rgb;
@@ -47,7 +48,7 @@ pub(crate) fn write<T: Sample, W: Write + Send, E: From<Error>>(
     let stream = bands::code(*size, BAND_ROWS, Stream { file, checksum: 1 }, code, make)?;
     let mut file = stream.file;
     file.write_chunk(chunk::IDAT, &stream.checksum.to_be_bytes()).map_err(error)?;
-    Ok(file.finish().map_err(error)?)
+    file.finish().map_err(error)
 }
 
 fn error(e: EncodingError) -> Error {
