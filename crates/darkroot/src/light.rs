@@ -45,10 +45,8 @@ fn meant(text: &str) -> Option<String> {
         low.parse::<f64>().ok().map(|_| format!("{low}K")).filter(|k| LightSource::by_name(k).is_some());
     let also =
         || ALSO.iter().find(|(names, _)| names.contains(&low.as_str())).map(|(_, name)| (*name).to_owned());
-    // Written with a dash or a space between, or with a slip of the finger.
-    let plain = || LightSource::by_name(&low).map(|found| found.light.name);
     let near = || crate::nearest(&low, LightSource::names()).map(str::to_owned);
-    temperature.or_else(also).or_else(plain).or_else(near)
+    temperature.or_else(also).or_else(near)
 }
 
 /// Whether a text that names no file can only have meant one: it says in which folder, or has an ending of letters.
@@ -103,7 +101,6 @@ mod tests {
             ("Tungsten", "A"),
             ("TL84", "FL11"),
             ("TL-84", "FL11"),
-            ("LED B3", "LED-B3"),
             ("D56", "D5"),
         ] {
             let message = find(text).unwrap_err().to_string();
