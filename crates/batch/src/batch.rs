@@ -4,7 +4,7 @@ use std::collections::{HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use darkroot::ProfileStore;
+use darkroot::{ProfileStore, files};
 
 use super::batch_error::BatchError;
 use super::crew::{Crew, Next, Progress, Work};
@@ -21,6 +21,7 @@ use super::record::Record;
 use super::run::Run;
 use super::session::{ChartSearch, ChartShot, Session};
 use super::settings_by_file::SettingsByFile;
+use super::split::Split;
 use super::stop::Stop;
 use super::task::{Answer, Develop, Task};
 use super::wording::Wording;
@@ -30,6 +31,7 @@ pub struct Batch {
     out: PathBuf,
     scratch: PathBuf,
     journal: Journal,
+    _split: Split,
     history: History,
     store: ProfileStore,
     crew: Crew,
@@ -47,6 +49,7 @@ impl Batch {
         let out = options.out.clone();
         std::fs::create_dir_all(&out).map_err(|reason| BatchError::Out { path: out.clone(), reason })?;
         let suffix = options.shard.suffix();
+        let split = Split::join(&out, options.shard.count)?;
         let (journal, own) = Journal::open(&out, &suffix)?;
         let mut history = own;
         for (name, other) in journal::read_all(&out)? {
@@ -59,6 +62,7 @@ impl Batch {
             out,
             scratch,
             journal,
+            _split: split,
             history,
             store,
             crew: Crew::new(crew),
@@ -88,7 +92,7 @@ impl Batch {
     /// What is left of a run that was ended at once is no output.
     fn clear_scratch(&self) {
         // What cannot be removed does no harm there.
-        let _ = std::fs::remove_dir_all(&self.scratch);
+        let _ = files::clear_unfinished(&self.out, &self.scratch);
     }
 
     /// Decides about every file; workers read headers where names need them.
@@ -130,7 +134,8 @@ impl Batch {
             Ok(())
         };
         let place = &folder;
-        ChartSearch { crew, chart, place, known: &known, note: &mut note, stop }.find(sources, say)
+        ChartSearch { crew, chart, out: &self.out, place, known: &known, note: &mut note, stop }
+            .find(sources, say)
     }
 
     /// Runs a plan.
@@ -168,10 +173,6 @@ impl Batch {
             }
         }
         let todo = queue.len();
-        if todo > 0 {
-            std::fs::create_dir_all(&self.scratch)
-                .map_err(|reason| BatchError::Out { path: self.out.clone(), reason })?;
-        }
         let before = (run.summary.done, run.summary.failed);
         self.crew
             .perform(queue, stop, &mut |work, progress| run.on_progress(work, progress))
@@ -196,7 +197,7 @@ impl Batch {
     ) -> Result<(), BatchError> {
         let done = |(id, item): (usize, &Item)| match &item.state {
             State::Done(done) => {
-                let task = Task::Thumbnail { picture: self.out.join(&item.output) };
+                let task = Task::Thumbnail { picture: item.place(&self.out) };
                 Some(Work::new(id, task, done.written.size))
             }
             _ => None,
@@ -214,7 +215,7 @@ impl Batch {
 }
 
 fn develop_task(item: &Item, why: Why, out: &Path, scratch: &Path, thumbnail: bool) -> Develop {
-    let output = out.join(&item.output);
+    let output = item.place(out);
     // Whatever stands at the place of a new output stays; the plan knows the others for ours.
     let overwrite = why != Why::New || output.symlink_metadata().is_ok();
     Develop {
@@ -224,6 +225,7 @@ fn develop_task(item: &Item, why: Why, out: &Path, scratch: &Path, thumbnail: bo
         format: item.prepared.format.extension().to_owned(),
         session: Vec::clone(&item.session),
         overwrite,
+        out: out.to_owned(),
         scratch: scratch.to_owned(),
         thumbnail,
     }

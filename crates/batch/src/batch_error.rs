@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::journal::JournalError;
 use super::plan_fault::PlanFault;
+use darkroot::shown;
 
 /// Why a batch cannot run.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +20,7 @@ pub enum BatchError {
     #[error("workers cannot be started: {0}")]
     Worker(std::io::Error),
     /// The output folder.
-    #[error("{path}: the output folder cannot be made: {reason}", path = path.display())]
+    #[error("{path}: the output folder cannot be made: {reason}", path = shown(path))]
     Out {
         /// The folder.
         path: PathBuf,
@@ -27,13 +28,13 @@ pub enum BatchError {
         reason: std::io::Error,
     },
     /// The chart shot that a session was to be coloured by shows none.
-    #[error("{path}: no colour chart was found in it", path = path.display())]
+    #[error("{path}: no colour chart was found in it", path = shown(path))]
     NoChart {
         /// The shot.
         path: PathBuf,
     },
     /// The chart shot that a session was to be coloured by gives no profile.
-    #[error("{path}: no profile can be made of it", path = path.display())]
+    #[error("{path}: no profile can be made of it", path = shown(path))]
     NoProfile {
         /// The shot.
         path: PathBuf,

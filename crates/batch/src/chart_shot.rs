@@ -3,8 +3,12 @@
 use std::path::Path;
 
 use darkroot::fault::ChartError;
+use darkroot::files::Tree;
 use darkroot::make_profile::ChartRequest;
-use darkroot::{Error, Settings, ShotOptions, charts, find_chart, light, make_profile, store};
+use darkroot::shot::{Finding, Verdict};
+use darkroot::{
+    Error, LightSource, MadeProfile, Settings, ShotOptions, charts, find_chart, light, make_profile, store,
+};
 
 use super::facts::{CameraNames, SessionColour};
 use super::hash;
@@ -28,13 +32,39 @@ pub(crate) fn look(
     Ok(best.filter(|f| f.confidence >= SURE).map(|f| (f.layout, f.confidence)))
 }
 
+/// Makes the profile under the light that was named, and refuses a shot that was taken in another; where none was named,
+/// under the light that the shot itself shows.
+fn made_in_its_light(
+    mut request: ChartRequest,
+    is_named: bool,
+    settings: &Settings,
+) -> Result<MadeProfile, Error> {
+    let made = make_profile(&request, settings)?;
+    let Some(first) = made.lights.first() else { return Ok(made) };
+    if is_named {
+        let other = first.gates.iter().find(|g| matches!(g.finding, Finding::Light { .. }));
+        if let Some(gate) = other.filter(|g| g.verdict != Verdict::Good) {
+            return Err(Error::chart(&request.shots[0].0, ChartError::Refused(Box::new(gate.clone()))));
+        }
+        return Ok(made);
+    }
+    match first.light_found() {
+        Some(light) => {
+            request.shots[0].1 = light;
+            make_profile(&request, settings)
+        }
+        None => Ok(made),
+    }
+}
+
 /// Makes a profile of a chart shot and writes it.
 pub(crate) fn calibrate(task: &Calibrate, settings: &Settings) -> Result<SessionColour, Error> {
     let input = &task.input;
     let layout = charts::layout(&task.layout)?;
     let reference = charts::reference(task.reference.as_deref(), &layout)?;
+    let named = task.light.as_deref().map(light::find).transpose()?;
     let request = ChartRequest {
-        shots: vec![(input.clone(), light::find(&task.light)?)],
+        shots: vec![(input.clone(), named.clone().unwrap_or_else(LightSource::assumed))],
         layout,
         reference: reference.colours,
         reference_name: reference.name,
@@ -44,14 +74,15 @@ pub(crate) fn calibrate(task: &Calibrate, settings: &Settings) -> Result<Session
         average: false,
         date: String::new(),
     };
-    let made = make_profile(&request, settings)?;
+    let made = made_in_its_light(request, named.is_some(), settings)?;
     let first = made.lights.first().ok_or(Error::NoLight)?;
     let camera = first.shots.first().map(|s| CameraNames::from(&s.camera)).unwrap_or_default();
     let white = first.calibrated.white_rgb;
     if white.iter().any(|v| *v <= 0.0) {
         return Err(Error::chart(input, ChartError::DarkGreys));
     }
-    store::write(&made.profile, &task.profile, true)?;
+    let scratch = task.profile.parent().unwrap_or(&task.out).to_owned();
+    store::write_below(&made.profile, &task.profile, &Tree { root: task.out.clone(), scratch })?;
     Ok(SessionColour {
         camera,
         chart: String::new(),

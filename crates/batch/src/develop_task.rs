@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use darkroot::files::Tree;
 use darkroot::job::{Control, develop_bytes};
 use darkroot::recipe::Effective;
 use darkroot::{Error, Format, Job, ProfileStore, Settings};
@@ -12,11 +13,12 @@ use super::facts::{CameraNames, Identity, modified};
 use super::failure::FailureKind;
 use super::task::{Develop, Developed, Fault, TaskError};
 use super::{hash, process_limits, thumbnail};
+use darkroot::shown;
 
 /// Settings and format of a task. The parent has checked them.
 pub(crate) fn settings(task: &Develop) -> Result<(Settings, Format), TaskError> {
     let wrong = |e: darkroot::RecipeError| {
-        let words = format!("{}: {e}", task.input.display());
+        let words = format!("{}: {e}", shown(&task.input));
         TaskError { kind: FailureKind::File, words }
     };
     let effective = Effective::from_texts(&task.texts).map_err(wrong)?;
@@ -37,7 +39,7 @@ pub(crate) fn develop(
     let (mut settings, format) = settings(task).map_err(Fault::Task)?;
     settings.format = Some(format);
     settings.overwrite = task.overwrite;
-    settings.scratch = Some(task.scratch.clone());
+    settings.tree = Some(Tree { root: task.out.clone(), scratch: task.scratch.clone() });
     let names = CameraNames::from(camera);
     let colour = task.session.iter().find(|c| c.camera == names);
     if let Some(colour) = colour {

@@ -111,6 +111,7 @@ pub struct SessionColour {
     /// The chart shot's path below its root.
     pub chart: String,
     /// The profile's file.
+    #[serde(with = "darkroot::path_text")]
     pub profile: PathBuf,
     /// SHA-256 of the profile.
     pub sha256: String,

@@ -6,6 +6,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::wording::Wording;
+use darkroot::shown;
 
 /// Why a file was not developed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -22,7 +23,7 @@ pub enum Failure {
     /// All workers together may not have as much memory as this file needs.
     #[error(
         "{path}: needs {} of memory beside the main program, but all together may have {}",
-        bytes_text(*needed), bytes_text(*allowed), path = path.display()
+        bytes_text(*needed), bytes_text(*allowed), path = shown(path)
     )]
     NeverFits {
         /// The file.
@@ -33,7 +34,7 @@ pub enum Failure {
         allowed: u64,
     },
     /// It was not done in time.
-    #[error("{path}: took longer than {}", humantime::format_duration(*limit), path = path.display())]
+    #[error("{path}: took longer than {}", humantime::format_duration(*limit), path = shown(path))]
     TookTooLong {
         /// The file.
         path: PathBuf,
@@ -41,7 +42,7 @@ pub enum Failure {
         limit: Duration,
     },
     /// Its worker asked for more memory than it may have.
-    #[error("{path}: took more memory than such a file should; it is most likely damaged", path = path.display())]
+    #[error("{path}: took more memory than such a file should; it is most likely damaged", path = shown(path))]
     TooMuchMemory {
         /// The file.
         path: PathBuf,
@@ -49,7 +50,7 @@ pub enum Failure {
     /// The system ended its worker.
     #[error(
         "{path}: the system ended the process that worked on it, most likely for want of memory",
-        path = path.display()
+        path = shown(path)
     )]
     Ended {
         /// The file.
@@ -58,7 +59,7 @@ pub enum Failure {
     /// Its worker crashed.
     #[error(
         "{path}: its decoder crashed, which cost only this file; it is most likely damaged",
-        path = path.display()
+        path = shown(path)
     )]
     Crashed {
         /// The file.
@@ -112,7 +113,7 @@ pub enum FailureKind {
 #[non_exhaustive]
 pub enum Conflict {
     /// No journal knows it.
-    #[error("{path}: exists already and is not from a batch into this folder", path = path.display())]
+    #[error("{path}: exists already and is not from a batch into this folder", path = shown(path))]
     NotOurs {
         /// The picture.
         path: PathBuf,
@@ -120,7 +121,7 @@ pub enum Conflict {
     /// It is not what the journal says.
     #[error(
         "{path}: was changed after Darkroot wrote it, and would be replaced now",
-        path = path.display()
+        path = shown(path)
     )]
     Changed {
         /// The picture.

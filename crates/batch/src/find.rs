@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use darkroot::path_text;
 use walkdir::{DirEntry, WalkDir};
 
 use super::facts::{FOLDER, modified};
@@ -12,7 +13,7 @@ use super::source_fault::SourceFault;
 /// What a person names as input.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Search {
-    /// Folders, files and patterns (`shoot/**/*.NEF`).
+    /// Folders, files and patterns (`shoot/**/*.NEF`), as [`path_text`] writes them.
     pub inputs: Vec<String>,
     /// Whether only the folders themselves are read, not those in them.
     pub flat: bool,
@@ -33,7 +34,7 @@ pub struct Search {
 pub struct Source {
     /// Where it is.
     pub path: PathBuf,
-    /// Its path below its root, with forward slashes: what the output's place follows from.
+    /// Its path below its root, with forward slashes, as [`path_text`] writes it: what the output's place follows from.
     pub key: String,
     /// Size in bytes.
     pub size: u64,
@@ -46,7 +47,7 @@ pub struct Source {
 pub struct Sources {
     /// The files, ordered by root and path.
     pub files: Vec<Source>,
-    /// What could not be read: folders without permission, names that are no Unicode, broken links.
+    /// What could not be read: folders without permission, broken links.
     pub faults: Vec<SourceFault>,
     /// Folders that were searched.
     pub folders: Vec<PathBuf>,
@@ -81,7 +82,7 @@ pub fn find(search: &Search, out: &Path) -> Result<Sources, FindError> {
 fn expand(search: &Search) -> Result<Vec<PathBuf>, FindError> {
     let mut roots = Vec::new();
     for input in &search.inputs {
-        let path = PathBuf::from(input);
+        let path = path_text::path(input);
         if path.exists() {
             roots.push(path);
             continue;
@@ -113,9 +114,9 @@ fn walk(
     let depth = if search.flat { 1 } else { usize::MAX };
     let key = |entry: &DirEntry| {
         let below = entry.path().strip_prefix(root).unwrap_or(entry.path());
-        let parts: Option<Vec<&str>> = below.components().map(|c| c.as_os_str().to_str()).collect();
-        let below = parts?.join("/");
-        Some(if prefix.is_empty() { below } else { format!("{prefix}/{below}") })
+        let below: Vec<String> = below.iter().map(|part| path_text::text(Path::new(part))).collect();
+        let below = below.join("/");
+        if prefix.is_empty() { below } else { format!("{prefix}/{below}") }
     };
     let enter = |entry: &DirEntry| {
         if entry.depth() == 0 {
@@ -128,7 +129,7 @@ fn walk(
             return false;
         }
         let folder = entry.file_type().is_dir();
-        !(folder && (filter.is_out(entry.path()) || key(entry).is_some_and(|k| filter.excludes(&k, &name))))
+        !(folder && (filter.is_out(entry.path()) || filter.excludes(&key(entry), &name)))
     };
     let entries = WalkDir::new(root)
         .max_depth(depth)
@@ -147,20 +148,14 @@ fn walk(
             continue;
         }
         let name = entry.file_name().to_string_lossy();
-        match key(&entry) {
-            Some(key) if filter.takes(&key, &name) => take(entry.path(), key, seen, found),
-            Some(_) => {}
-            None if filter.takes(&name, &name) => found.faults.push(no_unicode(entry.path())),
-            None => {}
+        let key = key(&entry);
+        if filter.takes(&key, &name) {
+            take(entry.path(), key, seen, found);
         }
     }
 }
 
 fn take(path: &Path, key: String, seen: &mut HashSet<PathBuf>, found: &mut Sources) {
-    if key.is_empty() {
-        found.faults.push(no_unicode(path));
-        return;
-    }
     let real = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if !seen.insert(real) {
         return;
@@ -178,19 +173,15 @@ fn take(path: &Path, key: String, seen: &mut HashSet<PathBuf>, found: &mut Sourc
     }
 }
 
-fn no_unicode(path: &Path) -> SourceFault {
-    SourceFault::NoUnicode { path: path.to_owned() }
-}
-
-/// The last part of the path as text; empty when it is no Unicode.
+/// The last part of the path.
 fn file_name(path: &Path) -> String {
-    path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_owned()
+    path.file_name().map(|name| path_text::text(Path::new(name))).unwrap_or_default()
 }
 
 /// A folder's own name, also for "." and "..".
 fn folder_name(path: &Path) -> String {
     let real = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    real.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default()
+    file_name(&real)
 }
 
 #[cfg(test)]

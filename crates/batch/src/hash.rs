@@ -1,13 +1,12 @@
 //! SHA-256 of texts, files and profiles, as `sha256sum` prints it.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use darkroot_develop::OutputSpace;
 use sha2::{Digest, Sha256};
 
-use darkroot::{Engine, Error, ProfileChoice, ProfileStore, Settings, store};
+use darkroot::{Engine, Error, ProfileChoice, ProfileStore, Settings, files};
 
 /// Bytes that are read at once.
 const BLOCK: usize = 1 << 20;
@@ -24,7 +23,7 @@ pub(crate) fn text(text: &str) -> String {
 
 /// Of a file's content.
 pub(crate) fn file(path: &Path) -> io::Result<String> {
-    let mut file = File::open(path)?;
+    let mut file = files::open(path)?;
     let mut digest = Sha256::new();
     let mut block = vec![0; BLOCK];
     loop {
@@ -48,6 +47,6 @@ pub(crate) fn profile(
     match &settings.profile {
         ProfileChoice::Matrix => Ok(String::new()),
         ProfileChoice::Automatic => Ok(store.find(camera).map(|f| of(&f.profile)).unwrap_or_default()),
-        ProfileChoice::File(path) => store::read(path).map(|p| of(&p)),
+        ProfileChoice::File(path) => store.named(path).map(|found| of(&found.profile)),
     }
 }

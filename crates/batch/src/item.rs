@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use darkroot::Settings;
+use darkroot::{Settings, path_text, shown};
 use darkroot_encode::Format;
 
 use super::facts::{CameraNames, SessionColour};
@@ -112,7 +112,7 @@ pub struct FileSettings {
 pub struct Item {
     /// The input.
     pub source: Source,
-    /// The output's path below the output folder, with forward slashes.
+    /// The output's path below the output folder, with forward slashes, as [`path_text`] writes it.
     pub output: String,
     /// Its number.
     pub number: usize,
@@ -125,6 +125,16 @@ pub struct Item {
 }
 
 impl Item {
+    /// The output's path.
+    pub fn place(&self, out: &Path) -> PathBuf {
+        out.join(path_text::path(&self.output))
+    }
+
+    /// The output's path below the output folder, for people.
+    pub fn output_shown(&self) -> String {
+        shown(&path_text::path(&self.output))
+    }
+
     /// SHA-256 of all that a file of this camera is developed with, without where the profile's file lies.
     pub(crate) fn settings_hash(&self, camera: &CameraNames) -> String {
         let mut text = self.prepared.canonical.clone();

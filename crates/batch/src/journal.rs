@@ -4,10 +4,11 @@
 //! ends with a checksum of itself. A power cut can tear the last line; a torn or damaged line is left where it is and
 //! skipped, and counts as never written. The first line names the format and its version.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
+use darkroot::{files, shown};
 use sha2::{Digest, Sha256};
 
 use super::facts::FOLDER;
@@ -22,7 +23,7 @@ const VERSION: u32 = 1;
 #[non_exhaustive]
 pub enum JournalError {
     /// It cannot be read or written.
-    #[error("{path}: the journal cannot be {doing}: {reason}", path = path.display())]
+    #[error("{path}: the journal cannot be {doing}: {reason}", path = shown(path))]
     Io {
         /// The journal.
         path: PathBuf,
@@ -32,16 +33,24 @@ pub enum JournalError {
         reason: io::Error,
     },
     /// Another run has it open.
-    #[error("{path}: another run writes to this folder", path = path.display())]
+    #[error("{path}: another run writes to this folder", path = shown(path))]
     Locked {
         /// The journal.
         path: PathBuf,
+    },
+    /// Another run shares the folder's files out in another way.
+    #[error("{path}: {} writes to this folder", others(*running), path = shown(path))]
+    OtherSplit {
+        /// The file that says so.
+        path: PathBuf,
+        /// Parts of the run that is at work.
+        running: u64,
     },
     /// It is of another program or a later version.
     #[error(
         "{path}: is no journal that this version reads ({cause}); use the Darkroot that wrote it, or choose another \
          output folder",
-        path = path.display()
+        path = shown(path)
     )]
     Foreign {
         /// The journal.
@@ -49,6 +58,10 @@ pub enum JournalError {
         /// What it is.
         cause: ForeignJournal,
     },
+}
+
+fn others(parts: u64) -> String {
+    if parts == 1 { "a run over all files".to_owned() } else { format!("a run over one of {parts} parts") }
 }
 
 /// Why a file is no journal that this version reads.
@@ -90,8 +103,7 @@ impl Journal {
             let path = path.clone();
             move |reason| JournalError::Io { path, doing, reason }
         };
-        std::fs::create_dir_all(&folder).map_err(io("made"))?;
-        let file = OpenOptions::new().read(true).append(true).create(true).open(&path).map_err(io("made"))?;
+        let file = files::open_below(out, &path).map_err(io("made"))?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(JournalError::Locked { path }),
@@ -158,7 +170,7 @@ pub fn read_all(out: &Path) -> Result<Vec<(String, History)>, JournalError> {
         let path = entry.map_err(io(&folder))?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if name.starts_with("journal") && name.ends_with(".jsonl") {
-            let text = std::fs::read(&path).map_err(io(&path))?;
+            let text = read(&path)?;
             found.push((name, parse(&path, &text)?.0));
         }
     }
@@ -178,6 +190,15 @@ pub fn read_merged(out: &Path) -> Result<History, JournalError> {
         }
     }
     Ok(all)
+}
+
+/// The whole of a journal.
+fn read(path: &Path) -> Result<Vec<u8>, JournalError> {
+    let attempt = || {
+        let mut text = Vec::new();
+        files::open(path)?.read_to_end(&mut text).map(|_| text)
+    };
+    attempt().map_err(|reason| JournalError::Io { path: path.to_owned(), doing: "read", reason })
 }
 
 fn file_name(shard: &str) -> String {

@@ -24,8 +24,8 @@
 //! says what was done, so the next run does only what is left. [`watch()`] plans and runs again and again, whenever
 //! files came.
 //!
-//! An output is absent, or whole: unfinished ones lie in `.darkroot` inside the output folder, on the same disk, and
-//! are renamed into place.
+//! An output is absent, or whole: unfinished ones have no name, or lie in `.darkroot` inside the output folder, on the
+//! same disk, and are renamed into place.
 //!
 //! **What it does not do:** it prints nothing, reads no arguments and knows no options: errors say what is wrong, and
 //! the program that shows them says what to do ([`Wording`]).
@@ -76,6 +76,7 @@ mod thread;
 mod crew;
 
 mod headers;
+mod split;
 mod state;
 
 pub mod plan;

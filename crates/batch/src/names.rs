@@ -1,90 +1,67 @@
 //! Where outputs of a batch go below the output folder.
 
 use std::collections::HashMap;
+use std::path::{Component, Path};
 
 use darkroot::naming::NamingError;
+use darkroot::naming::template;
+pub use darkroot::naming::template::{Fields, needs_headers, needs_number};
+use darkroot::{path_text, shown};
 
 /// The tree of the inputs, mirrored.
 pub const MIRRORED: &str = "{folder}/{stem}.{ext}";
 
-/// What a name can be made of.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Fields {
-    /// The input's path below its root.
-    pub key: String,
-    /// Ending of the output's format.
-    pub ext: String,
-    /// The input's number.
-    pub number: usize,
-    /// Camera as it can stand in a file name; empty if unknown.
-    pub camera: String,
-    /// Date of the shot, 2026-05-01; empty if unknown.
-    pub date: String,
-    /// Name of the folder that the input lies in.
-    pub parent: String,
-}
-
-/// Whether the template names what stands inside files.
-pub fn needs_headers(template: &str) -> bool {
-    ["{camera}", "{date}", "{year}", "{month}", "{day}"].iter().any(|name| template.contains(name))
-}
-
-/// Whether the template numbers its files.
-pub fn needs_number(template: &str) -> bool {
-    template.contains("{seq}")
-}
-
-/// Fills in a template: a path below the output folder, with forward slashes.
+/// Fills in a template: a path below the output folder, with forward slashes, as [`path_text`] writes it.
 ///
 /// # Errors
 /// A placeholder that does not exist, a path that leaves the output folder.
 pub fn fill(template: &str, fields: &Fields) -> Result<String, NamingError> {
-    let (folder, name) = fields.key.rsplit_once('/').unwrap_or(("", &fields.key));
-    let (stem, ending) = match name.rsplit_once('.') {
-        Some((stem, ending)) if !stem.is_empty() => (stem, ending),
-        _ => (name, ""),
-    };
-    let date = |from: usize, to: usize| fields.date.get(from..to).unwrap_or("undated");
-    let or = |text: &str, other: &str| if text.is_empty() { other.to_owned() } else { text.to_owned() };
-    let mut out = String::new();
-    let mut rest = template;
-    while let Some((before, after)) = rest.split_once('{') {
-        let (name, tail) =
-            after.split_once('}').ok_or_else(|| NamingError::BatchPlaceholder { name: after.to_owned() })?;
-        out.push_str(before);
-        out.push_str(&match name {
-            "folder" => folder.to_owned(),
-            "stem" => stem.to_owned(),
-            "suffix" => ending.to_ascii_lowercase(),
-            "ext" => fields.ext.clone(),
-            "parent" => fields.parent.clone(),
-            "seq" => format!("{:04}", fields.number),
-            "camera" => or(&fields.camera, "unknown"),
-            "date" => or(&fields.date, "undated"),
-            "year" => date(0, 4).to_owned(),
-            "month" => date(5, 7).to_owned(),
-            "day" => date(8, 10).to_owned(),
-            other => return Err(NamingError::BatchPlaceholder { name: other.to_owned() }),
-        });
-        rest = tail;
+    let outside = || NamingError::Outside { template: template.to_owned() };
+    if template.starts_with('/') {
+        return Err(outside());
     }
-    out.push_str(rest);
-    let parts: Vec<&str> =
-        out.split(['/', std::path::MAIN_SEPARATOR]).filter(|p| !p.is_empty() && *p != ".").collect();
-    if parts.is_empty() || parts.contains(&"..") || template.starts_with('/') {
-        return Err(NamingError::Outside { template: template.to_owned() });
+    let mut parts = Vec::new();
+    for part in template::fill(template, fields)?.components() {
+        match part {
+            Component::Normal(part) => parts.push(path_text::text(Path::new(part))),
+            // A file that lies in no folder has none to name.
+            Component::RootDir | Component::CurDir => {}
+            Component::ParentDir | Component::Prefix(_) => return Err(outside()),
+        }
     }
-    Ok(parts.join("/"))
+    if parts.is_empty() { Err(outside()) } else { Ok(parts.join("/")) }
+}
+
+/// What the name of a file's output is made of, from the file's path below its root.
+pub fn fields(key: &str) -> Fields {
+    let path = path_text::path(key);
+    Fields {
+        folder: Some(path.parent().unwrap_or(Path::new("")).to_owned()),
+        name: path.file_name().unwrap_or_default().to_owned(),
+        ..Fields::default()
+    }
+}
+
+/// A path below a root, for people.
+pub(crate) fn key_shown(key: &str) -> String {
+    shown(&path_text::path(key))
 }
 
 /// Two or more inputs for one output, also where names differ only in case.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{output}: would be written from more than one input ({})", inputs.join(", "))]
+#[error("{}: would be written from more than one input ({})", key_shown(output), self.inputs_shown())]
 pub struct Collision {
     /// The common output.
     pub output: String,
     /// Keys of its inputs.
     pub inputs: Vec<String>,
+}
+
+impl Collision {
+    /// Its inputs, for people.
+    pub(crate) fn inputs_shown(&self) -> String {
+        self.inputs.iter().map(|key| key_shown(key)).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// Finds outputs that collide. `outputs` are pairs of input and output.
@@ -142,7 +119,7 @@ mod tests {
     use super::*;
 
     fn fields(key: &str) -> Fields {
-        Fields { key: key.into(), ext: "jpg".into(), number: 7, parent: "roll".into(), ..Fields::default() }
+        Fields { ext: "jpg".into(), number: 7, parent: "roll".into(), ..super::fields(key) }
     }
 
     #[test]
@@ -165,6 +142,10 @@ mod tests {
         for wrong in ["../{stem}.jpg", "/tmp/{stem}.jpg", "a/../../{stem}.jpg", ""] {
             assert!(fill(wrong, &fields("x.nef")).is_err(), "{wrong}");
         }
+        // A camera or a file that is called so leads nowhere, and refuses nobody.
+        let evil = Fields { camera: "..".into(), ..fields("a/...nef") };
+        assert_eq!(fill("{camera}/{stem}/x.{ext}", &evil).unwrap(), "__/__/x.jpg");
+        assert_eq!(fill(MIRRORED, &evil).unwrap(), "a/__.jpg");
     }
 
     fn pairs(list: &[(&str, &str)]) -> Vec<(String, String)> {

@@ -7,6 +7,7 @@ use super::item::Item;
 use super::journal::JournalError;
 use super::record::Done;
 use super::wording::Wording;
+use darkroot::shown;
 
 /// What happens to a file.
 #[derive(Debug)]
@@ -51,7 +52,7 @@ pub enum Event<'a> {
 #[non_exhaustive]
 pub enum StopReason {
     /// The output folder is not there any more.
-    #[error("{path}: the output folder is gone; bring it back and run again", path = path.display())]
+    #[error("{path}: the output folder is gone; bring it back and run again", path = shown(path))]
     FolderGone {
         /// The folder.
         path: PathBuf,

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use darkroot::ProfileStore;
 use darkroot::naming::Target;
+use darkroot::{ProfileStore, path_text};
 use rayon::prelude::*;
 
 use super::crew::Crew;
@@ -121,14 +121,13 @@ fn name(
     for (i, file) in files.iter().enumerate() {
         let head = heads.get(i).cloned().unwrap_or_default();
         let parent = std::path::absolute(&file.path).unwrap_or_else(|_| file.path.clone());
-        let parent = parent.parent().and_then(Path::file_name).map(|n| n.to_string_lossy().into_owned());
         let fields = Fields {
-            key: file.key.clone(),
             ext: prepared[i].format.extension().to_owned(),
             number: numbers[i],
             camera: head.camera,
             date: head.date,
-            parent: parent.unwrap_or_default(),
+            parent: parent.parent().and_then(Path::file_name).unwrap_or_default().to_owned(),
+            ..names::fields(&file.key)
         };
         outputs.push((file.key.clone(), names::fill(&options.template, &fields)?));
     }
@@ -178,8 +177,9 @@ fn refuse_over_inputs(files: &[Source], outputs: &[(String, String)], out: &Path
     let real = |p: &Path| std::fs::canonicalize(p).ok();
     let inputs: std::collections::HashSet<PathBuf> = files.iter().filter_map(|f| real(&f.path)).collect();
     for (_, output) in outputs {
-        if real(&out.join(output)).is_some_and(|path| inputs.contains(&path)) {
-            return Err(PlanFault::OverInput { path: output.clone() });
+        let path = out.join(path_text::path(output));
+        if real(&path).is_some_and(|path| inputs.contains(&path)) {
+            return Err(PlanFault::OverInput { path });
         }
     }
     Ok(())

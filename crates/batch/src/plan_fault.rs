@@ -1,6 +1,10 @@
 //! Why there is no plan.
 
-use super::names::Collision;
+use std::path::PathBuf;
+
+use darkroot::shown;
+
+use super::names::{Collision, key_shown};
 
 /// Why there is no plan.
 #[derive(Debug, thiserror::Error)]
@@ -13,10 +17,10 @@ pub enum PlanFault {
     #[error(transparent)]
     Recipe(#[from] darkroot::RecipeError),
     /// Settings that contradict each other.
-    #[error("{input}: {source}")]
+    #[error("{input}: {source}", input = shown(input))]
     Settings {
         /// The first input that they hold for.
-        input: String,
+        input: PathBuf,
         /// What contradicts.
         source: darkroot::SettingsError,
     },
@@ -24,10 +28,10 @@ pub enum PlanFault {
     #[error("{}", collision_list(.0))]
     Collisions(Vec<Collision>),
     /// An output is an input.
-    #[error("{path}: is an input of this batch and would be overwritten by a picture")]
+    #[error("{path}: is an input of this batch and would be overwritten by a picture", path = shown(path))]
     OverInput {
         /// The file.
-        path: String,
+        path: PathBuf,
     },
 }
 
@@ -36,7 +40,7 @@ fn collision_list(collisions: &[Collision]) -> String {
     let mut text =
         format!("several inputs would be written to one output, for {} of them:", collisions.len());
     for c in collisions.iter().take(SHOWN) {
-        text += &format!("\n  {}: {}", c.output, c.inputs.join(", "));
+        text += &format!("\n  {}: {}", key_shown(&c.output), c.inputs_shown());
     }
     if collisions.len() > SHOWN {
         text += &format!("\n  and {} more", collisions.len() - SHOWN);

@@ -59,11 +59,6 @@ impl<'a> Run<'a> {
         if let Err(error) = self.write(record) {
             return self.stop(error);
         }
-        let place = self.out.join(&item.output);
-        if let Some(folder) = place.parent() {
-            // If it cannot be made, the worker says so with the file's name.
-            let _ = std::fs::create_dir_all(folder);
-        }
         (self.on_event)(Event::Begun(item));
         Next::GoOn
     }

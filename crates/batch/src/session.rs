@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use darkroot::store;
+use darkroot::{path_text, shown, store};
 
 use super::batch_error::BatchError;
 use super::crew::{Crew, Next, Progress, Work};
@@ -27,8 +27,8 @@ pub struct ChartShot {
     pub layout: Option<String>,
     /// Its reference; the built-in one, if none.
     pub reference: Option<String>,
-    /// The light, as [`darkroot::light::find`] takes it.
-    pub light: String,
+    /// The light, as [`darkroot::light::find`] takes it; the one that each shot shows, if none.
+    pub light: Option<String>,
 }
 
 /// Colours of sessions, by folder.
@@ -55,7 +55,8 @@ impl Session {
 pub(crate) struct ChartSearch<'a> {
     pub(crate) crew: &'a mut Crew,
     pub(crate) chart: &'a ChartShot,
-    /// Folder for the profiles.
+    /// The output folder, and one below it for the profiles.
+    pub(crate) out: &'a Path,
     pub(crate) place: &'a Path,
     /// What earlier runs found out.
     pub(crate) known: &'a KnownCharts,
@@ -91,7 +92,7 @@ impl ChartSearch<'_> {
     fn of_file(&mut self, file: &Path, say: &mut dyn FnMut(&str)) -> Result<Session, BatchError> {
         let data = std::fs::metadata(file);
         let (size, modified) = data.map_or((0, 0), |m| (m.len(), modified(&m)));
-        let named = [Source { path: file.to_owned(), key: file.display().to_string(), size, modified }];
+        let named = [Source { path: file.to_owned(), key: path_text::text(file), size, modified }];
         let looks = self.look_at(&named)?;
         let look = looks.get(&named[0].key);
         let Some((look, (layout, _))) = look.and_then(|s| Some((s, s.chart.clone()?))) else {
@@ -194,6 +195,7 @@ impl ChartSearch<'_> {
                 layout: shot.layout.clone(),
                 reference: self.chart.reference.clone(),
                 light: self.chart.light.clone(),
+                out: self.out.to_owned(),
                 profile,
             });
             queue.push_back(Work::new(id, task, shot.source.size));
@@ -228,7 +230,8 @@ fn request(chart: &ChartShot, shot: &ChartFound<'_>) -> String {
     // A name that is no file stands for something built in.
     let content = |name: &str| hash::file(Path::new(name)).unwrap_or_default();
     let reference = chart.reference.as_deref().unwrap_or_default();
-    let light = chart.light.split(':').next().unwrap_or_default();
+    let light = chart.light.as_deref().unwrap_or_default();
+    let lamp = light.split(':').next().unwrap_or_default();
     hash::text(&format!(
         "{}\n{}\n{} {}\n{reference} {}\n{} {}",
         darkroot::VERSION,
@@ -236,8 +239,8 @@ fn request(chart: &ChartShot, shot: &ChartFound<'_>) -> String {
         shot.layout,
         content(&shot.layout),
         content(reference),
-        chart.light,
-        content(light),
+        light,
+        content(lamp),
     ))
 }
 
@@ -251,7 +254,8 @@ fn words(which: &str, colour: &SessionColour) -> String {
     let camera = darkroot_photo::Camera::from(&colour.camera).name();
     format!(
         "{which}: white balance and profile for {camera} from the chart in {} (mean dE2000 of left-out patches {:.2})",
-        colour.chart, colour.left_out
+        shown(&path_text::path(&colour.chart)),
+        colour.left_out
     )
 }
 

@@ -41,7 +41,9 @@ impl SettingsByFile {
         if let std::collections::hash_map::Entry::Occupied(kept) = kept {
             return Ok(Arc::clone(kept.get()));
         }
-        settings.resolve(format).map_err(|e| PlanFault::Settings { input: source.key.clone(), source: e })?;
+        settings
+            .resolve(format)
+            .map_err(|e| PlanFault::Settings { input: source.path.clone(), source: e })?;
         let prepared = Arc::new(FileSettings { texts, settings, format, canonical });
         Ok(Arc::clone(kept.or_insert(prepared)))
     }

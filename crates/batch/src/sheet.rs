@@ -5,13 +5,15 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use darkroot::page::page;
-use darkroot::{Error, VERSION, write_text};
+use darkroot::{Error, VERSION, path_text, write_text};
 use maud::{Markup, html};
 use serde_json::json;
 
 use super::item::{BatchPlan, Item, State};
 use super::journal;
+use super::names::key_shown;
 use super::outcome::{Event, Summary};
+use darkroot::shown;
 
 /// How the page looks.
 const STYLE: &str = include_str!("sheet.css");
@@ -32,7 +34,7 @@ pub struct Sheet {
 #[non_exhaustive]
 pub enum SheetError {
     /// A name that tells of no kind of report.
-    #[error("{path}: cannot be written: a report ends in .html or .json", path = path.display())]
+    #[error("{path}: cannot be written: a report ends in .html or .json", path = shown(path))]
     Ending {
         /// The report.
         path: PathBuf,
@@ -165,7 +167,7 @@ impl Sheet {
         let value = json!({
             "program": format!("darkroot {VERSION}"),
             "at": journal::now(),
-            "output_folder": plan.out.to_string_lossy(),
+            "output_folder": path_text::text(&plan.out),
             "done": summary.done, "failed": summary.failed, "unchanged": summary.skipped,
             "left": summary.left, "stopped": self.stopped, "interrupted": summary.interrupted,
             "seconds": summary.seconds, "megapixels": summary.pixels as f64 / 1e6,
@@ -183,7 +185,11 @@ impl Sheet {
                 (Some(place), Some(file)) => Some(kept(file, place)?),
                 _ => None,
             };
-            figures.push(figure(row, &link(base, &plan.out.join(&row.output)), picture.as_deref()));
+            figures.push(figure(
+                row,
+                &link(base, &plan.out.join(path_text::path(&row.output))),
+                picture.as_deref(),
+            ));
         }
         let faults = plan.faults.iter().map(ToString::to_string);
         let failures = self.rows.iter().filter_map(|r| r.error.clone());
@@ -196,7 +202,7 @@ impl Sheet {
             main { @for figure in figures { (figure) } }
         };
         let pictures = summary.done + summary.skipped;
-        let title = format!("{pictures} pictures in {}", plan.out.to_string_lossy());
+        let title = format!("{pictures} pictures in {}", shown(&plan.out));
         Ok(page(&title, STYLE, body))
     }
 }
@@ -206,7 +212,7 @@ fn head(plan: &BatchPlan, summary: &Summary, stopped: Option<&str>) -> Markup {
     let Summary { done, failed, skipped, left, seconds, pixels, .. } = summary;
     let mega = format!("{:.0}", *pixels as f64 / 1e6);
     html! {
-        h1 { (plan.out.to_string_lossy()) }
+        h1 { (shown(&plan.out)) }
         p { "darkroot " (VERSION) ", " (journal::now()) }
         dl {
             div { dt { "developed" } dd { (done) } }
@@ -232,7 +238,7 @@ fn figure(row: &Row, link: &str, picture: Option<&str>) -> Markup {
                     None => span.none { "no preview" },
                 }
             }
-            figcaption { b { (row.output) } span { (row.words) } }
+            figcaption { b { (key_shown(&row.output)) } span { (row.words) } }
         }
     }
 }
@@ -254,12 +260,13 @@ fn link(base: &Path, file: &Path) -> String {
     let absolute = |p: &Path| std::path::absolute(p).unwrap_or_else(|_| p.to_owned());
     let (base, file) = (absolute(base), absolute(file));
     let (prefix, path) = match file.strip_prefix(&base) {
-        Ok(below) => ("", below.to_string_lossy().into_owned()),
-        Err(_) => ("file://", file.to_string_lossy().into_owned()),
+        Ok(below) => ("", below),
+        Err(_) => ("file://", file.as_path()),
     };
-    let encoded: String = path
-        .bytes()
-        .map(|b| match b {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    let encoded: String = bytes
+        .iter()
+        .map(|&b| match b {
             b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'.' | b'-' | b'_' | b'~' => {
                 char::from(b).to_string()
             }

@@ -1,5 +1,6 @@
 //! What can be wrong with a place where inputs are looked for.
 
+use darkroot::shown;
 use std::io;
 use std::path::PathBuf;
 
@@ -8,39 +9,30 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum SourceFault {
     /// A link that leads up the tree, and would be followed for ever.
-    #[error("{path}: is a link to a folder above it; it is not followed", path = path.display())]
+    #[error("{path}: is a link to a folder above it; it is not followed", path = shown(path))]
     LinkLoop {
         /// The link.
         path: PathBuf,
     },
     /// A folder without permission.
-    #[error("{path}: permission denied; check the folder's rights", path = path.display())]
+    #[error("{path}: permission denied; check the folder's rights", path = shown(path))]
     Denied {
         /// The folder.
         path: PathBuf,
     },
     /// Nothing at the end of a link, or not any more.
-    #[error("{path}: is gone, or a link to nothing", path = path.display())]
+    #[error("{path}: is gone, or a link to nothing", path = shown(path))]
     Gone {
         /// The file or folder.
         path: PathBuf,
     },
     /// A folder that cannot be read for another reason.
-    #[error("{path}: cannot be read: {source}", path = path.display())]
+    #[error("{path}: cannot be read: {source}", path = shown(path))]
     Folder {
         /// The folder.
         path: PathBuf,
         /// What the system says.
         source: walkdir::Error,
-    },
-    /// A name that a journal, which is text, cannot hold.
-    #[error(
-        "{path}: its name is no valid Unicode and cannot stand in a journal; rename it",
-        path = path.display()
-    )]
-    NoUnicode {
-        /// The file.
-        path: PathBuf,
     },
     /// A file that cannot be read.
     #[error(transparent)]

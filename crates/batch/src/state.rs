@@ -71,7 +71,7 @@ pub(crate) fn state(
     known: Option<&Known>,
     profiles: &Profiles<'_>,
 ) -> State {
-    let path = options.out.join(&item.output);
+    let path = item.place(&options.out);
     let there = path.symlink_metadata().ok();
     let nothing = Known::default();
     let known = known.unwrap_or(&nothing);

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use darkroot::Error;
+use darkroot::{Error, path_text};
 use serde::{Deserialize, Serialize};
 
 use super::facts::{CameraNames, ChartLook, Header, Identity, SessionColour};
@@ -31,15 +31,25 @@ pub(crate) enum Order {
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Task {
     /// Read what stands at the head of the file.
-    Header { input: PathBuf },
+    Header {
+        #[serde(with = "path_text")]
+        input: PathBuf,
+    },
     /// Develop a file.
     Develop(Develop),
     /// Look for a chart in a file.
-    Look { input: PathBuf, layout: Option<String> },
+    Look {
+        #[serde(with = "path_text")]
+        input: PathBuf,
+        layout: Option<String>,
+    },
     /// Make a profile of a chart shot.
     Calibrate(Calibrate),
     /// A small picture of a finished output.
-    Thumbnail { picture: PathBuf },
+    Thumbnail {
+        #[serde(with = "path_text")]
+        picture: PathBuf,
+    },
 }
 
 impl Task {
@@ -57,7 +67,9 @@ impl Task {
 /// A file to develop.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Develop {
+    #[serde(with = "path_text")]
     pub(crate) input: PathBuf,
+    #[serde(with = "path_text")]
     pub(crate) output: PathBuf,
     /// Every setting as text.
     pub(crate) texts: BTreeMap<String, String>,
@@ -67,7 +79,11 @@ pub(crate) struct Develop {
     pub(crate) session: Vec<SessionColour>,
     /// Whether a file at `output` may be replaced.
     pub(crate) overwrite: bool,
-    /// Folder for the unfinished output.
+    /// The output folder.
+    #[serde(with = "path_text")]
+    pub(crate) out: PathBuf,
+    /// Folder below it for the unfinished output.
+    #[serde(with = "path_text")]
     pub(crate) scratch: PathBuf,
     /// Whether to make a small picture of it too.
     pub(crate) thumbnail: bool,
@@ -76,6 +92,7 @@ pub(crate) struct Develop {
 /// A chart shot to make a profile of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Calibrate {
+    #[serde(with = "path_text")]
     pub(crate) input: PathBuf,
     /// SHA-256 of the shot as it was when its chart was found.
     pub(crate) sha256: String,
@@ -83,8 +100,12 @@ pub(crate) struct Calibrate {
     pub(crate) layout: String,
     /// Its reference; the built-in one, if none.
     pub(crate) reference: Option<String>,
-    pub(crate) light: String,
-    /// Where the profile goes.
+    pub(crate) light: Option<String>,
+    /// The output folder.
+    #[serde(with = "path_text")]
+    pub(crate) out: PathBuf,
+    /// Where the profile goes, below it.
+    #[serde(with = "path_text")]
     pub(crate) profile: PathBuf,
 }
 

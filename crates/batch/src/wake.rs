@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use notify::{Config, ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
 
 use super::stop::Stop;
+use darkroot::shown;
 
 /// How often to look where notifications come too.
 const RARELY: Duration = Duration::from_secs(30);
@@ -91,7 +92,7 @@ impl Wake {
             }
             let path = real(folder);
             if let Some(kind) = share(&path) {
-                let words = format!("{}: is on a share ({kind})", folder.display());
+                let words = format!("{}: is on a share ({kind})", shown(folder));
                 *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = Some(words);
                 break;
             }

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use darkroot::RecipeError;
+use darkroot::{RecipeError, path_text};
 
 use super::batch::Batch;
 use super::filter::FindError;
@@ -42,7 +42,7 @@ pub fn watch(
     stop: &Stop,
     on_notice: &mut dyn FnMut(Notice<'_>),
 ) -> Result<Watched, WatchError> {
-    if let Some(input) = options.search.inputs.iter().find(|i| PathBuf::from(i).is_file()) {
+    if let Some(input) = options.search.inputs.iter().find(|i| path_text::path(i).is_file()) {
         return Err(WatchError::NoFolder { input: input.clone() });
     }
     batch.inputs_may_vanish = true;
@@ -100,7 +100,7 @@ fn check_before_waiting(
 ) -> Result<(), WatchError> {
     find(&Search { inputs: Vec::new(), ..options.search.clone() }, &options.plan.out)?;
     let pretend = |input: &String| {
-        let (path, key) = (PathBuf::from(input).join("file.dng"), "file.dng".to_owned());
+        let (path, key) = (path_text::path(input).join("file.dng"), "file.dng".to_owned());
         Source { path, key, size: 0, modified: 0 }
     };
     for input in &options.search.inputs {
@@ -134,7 +134,7 @@ impl Watch<'_> {
     fn folders(&mut self) -> Vec<PathBuf> {
         let mut there = Vec::new();
         for input in &self.options.search.inputs {
-            let path = PathBuf::from(input);
+            let path = path_text::path(input);
             if path.is_dir() {
                 if self.away.remove(input) {
                     (self.on_notice)(Notice::Back(input));
@@ -149,9 +149,8 @@ impl Watch<'_> {
 
     /// All files in these folders; nothing if one of them has just gone.
     fn look(&mut self, folders: &[PathBuf]) -> Result<Option<Sources>, WatchError> {
-        let text = |path: &PathBuf| path.to_str().map(str::to_owned);
         let search = Search {
-            inputs: folders.iter().filter_map(text).collect(),
+            inputs: folders.iter().map(|folder| path_text::text(folder)).collect(),
             // Keys stay what they are when one of several folders is away.
             apart: self.options.search.inputs.len() > 1,
             ..self.options.search.clone()
@@ -171,7 +170,7 @@ impl Watch<'_> {
 
     /// Files that can be developed now.
     fn ready(&mut self, found: &Sources) -> Vec<Source> {
-        let away: Vec<PathBuf> = self.away.iter().map(PathBuf::from).collect();
+        let away: Vec<PathBuf> = self.away.iter().map(|input| path_text::path(input)).collect();
         self.settle.look(&found.files, &away, Instant::now())
     }
 

@@ -15,6 +15,7 @@ use super::failure::FailureKind;
 use super::raw_head::RawHead;
 use super::task::{Answer, Developed, Fault, Order, Task, TaskError};
 use super::{chart_shot, hash, need, process_limits, thumbnail};
+use darkroot::shown;
 
 /// Works as a worker process until stdin ends: the parent is done, or gone. `words` words errors for people;
 /// `&|error| error.to_string()` gives their own text.
@@ -139,7 +140,7 @@ fn read(task: &Task, host: &Host<'_>) -> Result<Input, TaskError> {
 }
 
 fn changing(path: &Path) -> TaskError {
-    let words = format!("{}: is still being written; run again when it is complete", path.display());
+    let words = format!("{}: is still being written; run again when it is complete", shown(path));
     TaskError { kind: FailureKind::Changing, words }
 }
 
@@ -213,7 +214,7 @@ fn guarded_result<T>(path: &Path, work: impl FnOnce() -> Result<T, Fault>) -> Re
 fn panicked(path: &Path) -> TaskError {
     let words = format!(
         "{}: Darkroot failed over it, which is a fault of Darkroot; please report it with this file",
-        path.display()
+        shown(path)
     );
     TaskError { kind: FailureKind::File, words }
 }

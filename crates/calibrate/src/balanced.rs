@@ -53,6 +53,14 @@ impl<'a> Balanced<'a> {
     }
 }
 
+/// Camera RGB of the white of a shot's light, through its grey patches; it needs not be known which light that is.
+///
+/// # Errors
+/// Too few usable patches, or greys that show no white.
+pub fn white_of(patches: &[MeasuredPatch]) -> Result<[f64; 3], CalibrateError> {
+    Ok(Balanced::new(patches, &LightSource::assumed(), &mut Vec::new())?.white_rgb)
+}
+
 fn over(rgb: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|c| rgb[c] / white[c])
 }

@@ -76,6 +76,20 @@ pub const PRESETS: [(&str, Limits); 3] = [
     ("iso19264-a", Limits { mean: Some(4.0), max: Some(10.0), within_four: None, sl1: false }),
 ];
 
+impl fmt::Display for Limits {
+    /// What they ask for, in words; nothing where they ask for nothing.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut words = Vec::new();
+        words.extend(self.mean.map(|v| format!("mean {v}")));
+        words.extend(self.max.map(|v| format!("max {v}")));
+        words.extend(self.within_four.map(|v| format!("{:.0} % below 4", 100.0 * v)));
+        if self.sl1 && !words.is_empty() {
+            words.push("SL = 1".to_owned());
+        }
+        f.write_str(&words.join(", "))
+    }
+}
+
 impl Limits {
     /// Which limits a shot does not keep.
     pub fn broken(&self, found: &Judgement) -> Vec<Broken> {

@@ -27,6 +27,8 @@ pub use gates::{Finding, Gate, Verdict};
 pub mod series;
 
 mod balanced;
+pub use balanced::white_of;
+
 mod compare;
 pub use compare::{Compared, EXPOSURES};
 

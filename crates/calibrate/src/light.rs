@@ -1,8 +1,8 @@
 //! The light that a chart stood in: its name, its chromaticity and, where it is known, its spectrum.
 
 use darkroot_colour::illuminant::{ILLUMINANTS, Illuminant};
-use darkroot_colour::temperature::planckian_xy;
-use darkroot_colour::{Spectrum, Xy};
+use darkroot_colour::temperature::{Temperature, planckian_xy};
+use darkroot_colour::{Spectrum, Xy, white};
 use darkroot_profile::Light;
 
 /// Temperature from which a light given in kelvin is taken for daylight, not for a black body.
@@ -37,6 +37,18 @@ impl LightSource {
         let sum = white.x + white.y + white.z;
         let light = Light { name: name.to_owned(), xy: Xy::new(white.x / sum, white.y / sum) };
         Self { light, spectrum: Some(spectrum) }
+    }
+
+    /// What is taken for a light of which nothing is known: D50, as in graphic arts.
+    pub fn assumed() -> Self {
+        let light = Light { name: "D50".to_owned(), xy: white::D50_XY };
+        Self { light, spectrum: Illuminant::by_name("D50").map(|d50| d50.spectrum()) }
+    }
+
+    /// Daylight, or a black body below 4000 K, of the temperature of a white that was measured, to the nearest 10 K. `None`
+    /// outside of 1000 to 25000 K.
+    pub fn of_white(white: Xy) -> Option<Self> {
+        Self::of_kelvin((Temperature::of(white).kelvin / 10.0).round() * 10.0)
     }
 
     /// Daylight of a temperature, a black body below 4000 K. `None` outside of 1000 to 25000 K.

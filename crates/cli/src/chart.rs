@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use clap::Args;
 use darkroot::find_chart::{Found, FoundCharts, preview};
-use darkroot::{Settings, charts, find_charts};
+use darkroot::{Settings, charts, find_charts, path_text, shown};
 use serde_json::json;
 
 use crate::Outcome;
 
 /// Find colour charts in raw files and pictures: corners, which chart, which way round
+///
+/// Exit code 1 when a file shows none.
 #[derive(Debug, Args)]
 pub(crate) struct Chart {
     /// Raw files, or JPEG, PNG and TIFF pictures
@@ -47,7 +49,6 @@ impl Chart {
             self.charts.iter().map(|c| charts::layout(c)).collect::<Result<_, _>>()?
         };
         let settings = Settings::default();
-        let mut out = std::io::stdout().lock();
         let mut outcome = Outcome::Done;
         for file in &self.files {
             let found = match find_charts(file, &layouts, &settings) {
@@ -61,8 +62,13 @@ impl Chart {
             if let Some(output) = &self.preview {
                 preview(file, &found, output, self.overwrite, &settings)?;
             }
-            let line = if self.json { json(file, &found).to_string() } else { words(file, &found) };
-            writeln!(out, "{line}")?;
+            if found.search.found.is_empty() {
+                outcome = Outcome::SomeFailed;
+            }
+            match self.json {
+                true => writeln!(crate::out::json(), "{}", json(file, &found))?,
+                false => writeln!(crate::out::lines(), "{}", words(file, &found))?,
+            }
         }
         Ok(outcome)
     }
@@ -82,7 +88,7 @@ fn json(file: &Path, found: &FoundCharts) -> serde_json::Value {
         })
     };
     json!({
-        "file": file.display().to_string(),
+        "file": path_text::text(file),
         "size": [found.size.width, found.size.height],
         "charts": found.search.found.iter().map(chart).collect::<Vec<_>>(),
         "refused": found.search.rejected.as_ref().map(|r| r.reason.to_string()),
@@ -91,12 +97,12 @@ fn json(file: &Path, found: &FoundCharts) -> serde_json::Value {
 
 /// A line for each chart, or one that says why there is none.
 fn words(file: &Path, found: &FoundCharts) -> String {
-    let file = file.display();
+    let file = shown(file);
     let chart = |c: &Found| {
         let corners: Vec<String> = c.corners.iter().flatten().map(|v| format!("{v:.1}")).collect();
         format!(
             "{file}: {} turned by {:.0} degrees, confidence {:.2}, patches of {:.0} pixels, corners {}",
-            c.layout,
+            shown(&c.layout),
             c.rotation_degrees,
             c.confidence,
             c.patch_pixels,

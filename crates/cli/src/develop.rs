@@ -1,11 +1,12 @@
 //! `darkroot develop`.
 
-use std::io::Write;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
-use darkroot::{Control, Job, ProfileStore, Report, Target, plan_outputs};
+use darkroot::{Control, Job, ProfileStore, Report, Target, path_text, plan_outputs, shown};
 
 use crate::hint;
 use crate::picture::{Order, Picture, source_paths, sources};
@@ -18,13 +19,14 @@ use crate::{Common, Outcome};
 /// another format.
 #[derive(Debug, Args)]
 pub(crate) struct Develop {
-    /// Raw files (NEF, DNG, CR2, ARW, RAF, ...)
+    /// Raw files (NEF, DNG, CR2, ARW, RAF, ...); `-` is standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
-    /// Where to write: a file, a folder, or a name with {stem} {ext} {parent} {camera} {date} {seq}
+    /// Where to write: a file, a folder, `-` (standard output), or a name with {stem} {suffix} {ext} {parent} {camera}
+    /// {date} {year} {month} {day} {seq}
     #[arg(short, long, value_name = "OUT", help_heading = "Output")]
-    output: Option<String>,
+    output: Option<OsString>,
 
     /// Replace outputs that exist
     #[arg(long, help_heading = "Output")]
@@ -41,17 +43,21 @@ pub(crate) struct Develop {
 impl Develop {
     /// Develops every file; one that fails does not stop the others.
     pub(crate) fn run(self, common: Common) -> Result<Outcome> {
-        let target = self.output.as_deref().map_or(Target::Beside, Target::parse);
+        let target = self.output.as_deref().map_or(Ok(Target::Beside), Target::parse)?;
+        ensure!(
+            !(self.json && target == Target::Stream),
+            "`--json` and `-o -` both write to standard output; leave one of them out"
+        );
+        ensure!(
+            target != Target::Stream || !std::io::stdout().is_terminal(),
+            "a picture is nothing for a terminal; send it on (`-o - > FILE`), or name a file"
+        );
         let mut layers = self.picture.layers()?;
         let orders = self.files.iter().map(|file| Order::of(file, &mut layers, &target));
         let orders = orders.collect::<Result<Vec<Order>>>()?;
         let inputs: Vec<_> = self.files.iter().cloned().zip(orders.iter().map(|o| o.format)).collect();
         let jobs = plan_outputs(&inputs, &target)?;
-        if let Target::Folder(folder) = &target {
-            std::fs::create_dir_all(folder).map_err(|e| {
-                anyhow::anyhow!("{}: the folder cannot be made: {e}; choose another `-o`", folder.display())
-            })?;
-        }
+        make_folders(&target, &jobs)?;
         let store = match ProfileStore::user_folder() {
             Some(folder) => ProfileStore::with_user_folder(&folder),
             None => ProfileStore::builtin(),
@@ -92,21 +98,36 @@ impl Develop {
     }
 }
 
+/// Makes the folders that a folder or a template names; the folder of a file must be there.
+fn make_folders(target: &Target, jobs: &[Job]) -> Result<()> {
+    let folders: Vec<&Path> = match target {
+        Target::Folder(folder) => vec![folder],
+        Target::Template(_) => jobs.iter().filter_map(|job| job.output.parent()).collect(),
+        Target::Beside | Target::File(_) | Target::Stream => return Ok(()),
+    };
+    for folder in folders {
+        std::fs::create_dir_all(folder).map_err(|e| {
+            anyhow::anyhow!("{}: the folder cannot be made: {e}; choose another `-o`", shown(folder))
+        })?;
+    }
+    Ok(())
+}
+
 /// What was done to a file, for a person.
 fn words(report: &Report, order: &Order, verbose: bool) -> String {
     let mut text = format!(
         "{} -> {} ({} x {}, {}, {} bits, {:.2} s)\n  colours: {}",
-        report.input.display(),
-        report.output.display(),
+        shown(&report.input),
+        shown(&report.output),
         report.width,
         report.height,
         report.space,
         report.bits,
         report.seconds,
-        report.colours,
+        shown(&report.colours),
     );
     if let Some(profile) = &report.profile {
-        text += &format!(", {profile}");
+        text += &format!(", {}", shown(profile));
     }
     let sources = sources(&order.effective);
     if !sources.is_empty() {
@@ -114,8 +135,12 @@ fn words(report: &Report, order: &Order, verbose: bool) -> String {
     }
     if verbose {
         let [r, g, b] = report.multipliers;
-        text +=
-            &format!("\n  camera: {}; decoder: {}; engine: {}", report.camera, report.decoder, report.engine);
+        text += &format!(
+            "\n  camera: {}; decoder: {}; engine: {}",
+            shown(&report.camera),
+            report.decoder,
+            report.engine
+        );
         text += &format!("\n  white balance: {r:.3} {g:.3} {b:.3}");
         if let (Some(kelvin), Some(tint)) = (report.kelvin, report.tint) {
             text += &format!(" ({kelvin:.0} K, tint {tint:+.0})");
@@ -123,7 +148,7 @@ fn words(report: &Report, order: &Order, verbose: bool) -> String {
         text += &format!("\n  demosaic: {}; exposure: x {:.3}", report.demosaic, report.gain);
     }
     for note in &report.notes {
-        text += &format!("\n  note: {note}");
+        text += &format!("\n  note: {}", shown(note));
     }
     text
 }
@@ -136,11 +161,11 @@ fn print_json(job: &Job, order: &Order, result: &Result<Report, darkroot::Error>
             line
         }
         Err(error) => serde_json::json!({
-            "status": "failed", "input": job.input.to_string_lossy(), "output": job.output.to_string_lossy(),
+            "status": "failed", "input": path_text::text(&job.input), "output": path_text::text(&job.output),
             "error": hint::words(error),
         }),
     };
     line["settings_from"] = source_paths(&order.effective).into();
-    writeln!(std::io::stdout(), "{line}")?;
+    writeln!(crate::out::json(), "{line}")?;
     Ok(())
 }

@@ -43,7 +43,7 @@ impl Evaluate {
     pub(crate) fn run(self) -> Result<Outcome> {
         let sets = self.sets.iter().map(|s| read_set(s)).collect::<Result<Vec<_>, _>>()?;
         let lights = self.lights.iter().map(|l| darkroot::light::find(l)).collect::<Result<Vec<_>, _>>()?;
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::out::lines();
         for camera in &self.cameras {
             let name = camera.file_stem().unwrap_or_default().to_string_lossy();
             for light in &lights {

@@ -11,6 +11,7 @@ use darkroot::{Inspection, Key, ProfileStore, Settings, settings};
 use darkroot_raw::Decoder;
 
 use crate::{Outcome, picture};
+use darkroot::shown;
 
 /// Say what a raw file is: camera, levels, white balance, matrices, clipping
 #[derive(Debug, Args)]
@@ -54,7 +55,7 @@ impl Inspect {
                 Ok(preview) => {
                     crate::say(format_args!(
                         "{}: {} x {} pixels",
-                        out.display(),
+                        shown(out),
                         preview.size.width,
                         preview.size.height
                     ));
@@ -78,7 +79,8 @@ impl Inspect {
                     } else {
                         words(&inspection)
                     };
-                    std::io::stdout().write_all(text.as_bytes())?;
+                    let mut out = if self.json { crate::out::json() } else { crate::out::lines() };
+                    out.write_all(text.as_bytes())?;
                 }
                 Err(error) => {
                     crate::say(format_args!("error: {}", crate::hint::words(&error)));
@@ -96,10 +98,10 @@ fn words(i: &Inspection) -> String {
     // Writing to a String cannot fail.
     let mut line = |name: &str, value: String| {
         if !value.is_empty() {
-            let _ = writeln!(text, "{name:<16}{value}");
+            let _ = writeln!(text, "{name:<16}{}", shown(&value));
         }
     };
-    line("file", i.input.display().to_string());
+    line("file", shown(&i.input));
     line("camera", i.camera.clone());
     line("stored as", format!("{}, {}, {} bits ({})", i.format, i.compression, i.bits, i.decoder));
     let [x, y, w, h] = i.crop;

@@ -10,15 +10,19 @@ mod evaluate;
 mod hint;
 mod inspect;
 mod interrupt;
+mod out;
 mod picture;
 mod profile;
 mod progress;
 mod recipe;
 mod shell;
+mod usage;
 mod values;
 mod verify;
 
 use std::process::ExitCode;
+
+pub(crate) use out::say;
 
 use clap::{Args, Parser, Subcommand};
 
@@ -75,14 +79,8 @@ enum Outcome {
     Rejected,
 }
 
-/// Words for a person, on stderr. That nobody reads them any more must not stop the work.
-fn say(words: std::fmt::Arguments<'_>) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stderr(), "{words}");
-}
-
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = usage::parse();
     keep_decoders_quiet();
     interrupt::handle();
     if let Some(threads) = cli.common.threads {
@@ -103,6 +101,10 @@ fn main() -> ExitCode {
         Command::Man(command) => command.run(),
         Command::Worker(command) => command.run(),
     };
+    let outcome = outcome.and_then(|outcome| {
+        out::finish()?;
+        Ok(outcome)
+    });
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
@@ -110,6 +112,10 @@ fn main() -> ExitCode {
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         // Whoever reads our output has seen enough.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if error.chain().any(|cause| out::NoStdout::within(cause).is_some()) => {
+            crate::say(format_args!("error: {error}"));
+            ExitCode::from(1)
+        }
         Err(error) => {
             crate::say(format_args!("error: {}", chain(&error)));
             ExitCode::from(2)

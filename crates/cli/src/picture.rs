@@ -120,7 +120,7 @@ impl Order {
         if sources.is_empty() {
             fits?;
         } else {
-            fits.with_context(|| format!("{}, with settings from {sources}", file.display()))?;
+            fits.with_context(|| format!("{}, with settings from {sources}", darkroot::shown(file)))?;
         }
         let notes = overruled(&effective, layers.flags(), format);
         Ok(Self { effective, settings, format, notes })
@@ -143,7 +143,7 @@ pub(crate) fn source_paths(effective: &Effective) -> Vec<String> {
     effective
         .files()
         .iter()
-        .filter_map(|(origin, _)| Some(origin.path()?.to_string_lossy().into_owned()))
+        .filter_map(|(origin, _)| Some(darkroot::path_text::text(origin.path()?)))
         .collect()
 }
 
@@ -171,7 +171,7 @@ fn overruled(effective: &Effective, flags: &Layer, format: Format) -> Vec<String
 pub(crate) fn shown(path: &Path) -> String {
     let here = std::env::current_dir().and_then(std::fs::canonicalize);
     let inner = here.ok().and_then(|here| path.strip_prefix(here).ok().map(Path::to_owned));
-    inner.as_deref().unwrap_or(path).display().to_string()
+    darkroot::shown(inner.as_deref().unwrap_or(path))
 }
 
 /// The words of a setting, with what they mean for the help.
@@ -179,6 +179,7 @@ pub(crate) fn words(key: Key) -> PossibleValuesParser {
     let words = if let Kind::Words(words) = key.setting().kind { words } else { &[] };
     PossibleValuesParser::new(words.iter().map(|word| {
         let value = PossibleValue::new(word.word);
+        let value = if word.also.is_empty() { value } else { value.alias(word.also) };
         if word.help.is_empty() { value } else { value.help(word.help) }
     }))
 }

@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 
+use darkroot::shown;
 use darkroot::{Job, Step};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -32,7 +33,7 @@ impl Progress {
     /// File number `number` (from 0) begins.
     pub(crate) fn begin(&self, number: usize, job: &Job) {
         self.file.set(number as u64);
-        self.bar.set_message(job.input.display().to_string());
+        self.bar.set_message(shown(&job.input));
     }
 
     /// A step of the file begins: the ones before it are done.

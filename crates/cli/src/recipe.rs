@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 use darkroot::settings::{Changes, Kind, SETTINGS, Setting};
-use darkroot::{Effective, Key};
+use darkroot::{Effective, Key, path_text};
 use serde_json::{Map, Value, json};
 
 use crate::Outcome;
 use crate::picture::{self, Picture};
+use darkroot::shown;
 
 /// Show which settings hold for files, and where each is from
 ///
@@ -37,7 +38,7 @@ pub(crate) struct Recipe {
 impl Recipe {
     pub(crate) fn run(self) -> Result<Outcome> {
         if self.describe {
-            writeln!(std::io::stdout(), "{:#}", description())?;
+            writeln!(crate::out::ours(), "{:#}", description())?;
             return Ok(Outcome::Done);
         }
         let mut layers = self.picture.layers()?;
@@ -48,17 +49,17 @@ impl Recipe {
         if self.files.is_empty() {
             recipes.push((None, layers.for_folder(Path::new("."))?));
         }
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::out::lines();
         for (number, (file, effective)) in recipes.iter().enumerate() {
             if self.json {
-                writeln!(out, "{}", as_json(*file, effective))?;
+                writeln!(crate::out::json(), "{}", as_json(*file, effective))?;
                 continue;
             }
             if number > 0 {
                 writeln!(out)?;
             }
-            let title = file.map_or("this folder".to_owned(), |f| f.display().to_string());
-            writeln!(out, "# {}", title.replace(char::is_control, "?"))?;
+            let title = file.map_or("this folder".to_owned(), shown);
+            writeln!(out, "# {}", title)?;
             write!(out, "{}", effective.to_toml(picture::shown))?;
         }
         Ok(Outcome::Done)
@@ -70,12 +71,12 @@ fn as_json(file: Option<&Path>, effective: &Effective) -> Value {
         let (text, origin) = effective.get(key);
         let mut value = json!({ "value": value(key, text), "from": origin.name() });
         if let Some(path) = origin.path() {
-            value["path"] = path.to_string_lossy().into();
+            value["path"] = path_text::text(path).into();
         }
         (key.name().to_owned(), value)
     };
     let settings: Map<String, Value> = Key::all().map(one).collect();
-    json!({ "file": file.map(Path::to_string_lossy), "settings": settings })
+    json!({ "file": file.map(path_text::text), "settings": settings })
 }
 
 /// The table of settings, for programs that offer them to a person.

@@ -8,6 +8,7 @@ use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use crate::{Cli, Outcome};
+use darkroot::shown;
 
 /// Print completions for a shell
 ///
@@ -22,7 +23,7 @@ impl Completions {
     pub(crate) fn run(self) -> Result<Outcome> {
         let mut text = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "darkroot", &mut text);
-        std::io::stdout().write_all(&text)?;
+        crate::out::ours().write_all(&text)?;
         Ok(Outcome::Done)
     }
 }
@@ -40,14 +41,14 @@ impl Man {
         match self.folder {
             Some(folder) => {
                 std::fs::create_dir_all(&folder)
-                    .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+                    .with_context(|| format!("{}: the folder cannot be made", shown(&folder)))?;
                 clap_mangen::generate_to(Cli::command(), &folder)
-                    .with_context(|| format!("{}: the pages cannot be written", folder.display()))?;
+                    .with_context(|| format!("{}: the pages cannot be written", shown(&folder)))?;
             }
             None => {
                 let mut page = Vec::new();
                 clap_mangen::Man::new(Cli::command()).render(&mut page)?;
-                std::io::stdout().write_all(&page)?;
+                crate::out::ours().write_all(&page)?;
             }
         }
         Ok(Outcome::Done)

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
+use darkroot::store::Found;
 use darkroot::verify::{
-    Judgement, Limits, LogLine, PRESETS, Verification, append, history, read_log, verify,
+    Limits, LogLine, Outcome as Judged, PRESETS, Verification, append, history, read_log, verify,
 };
-use darkroot::{Settings, write_text};
+use darkroot::{Settings, shown, write_text};
 
 use crate::profile::{ShotArgs, store};
 use crate::{Common, Outcome};
@@ -26,9 +27,9 @@ pub(crate) struct Verify {
     #[command(flatten)]
     shot: ShotArgs,
 
-    /// Light of the shot: D50, A, LED-B3, 5200K, x,y, lamp.csv
-    #[arg(long, value_name = "LIGHT", default_value = "D50")]
-    light: String,
+    /// Light of the shot: D50, A, LED-B3, 5200K, x,y, lamp.csv; the one that its white shows if not given
+    #[arg(long, value_name = "LIGHT")]
+    light: Option<String>,
 
     /// Largest mean dE2000
     #[arg(long, value_name = "DE")]
@@ -40,15 +41,15 @@ pub(crate) struct Verify {
 
     /// Limits of a guideline: fadgi-4star, metamorfoze-full, iso19264-a
     #[arg(long, value_name = "NAME", value_parser = preset)]
-    preset: Option<Limits>,
+    preset: Option<Preset>,
 
     /// Append a line to this CSV file
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
 
-    /// Date for the log; empty if not given
-    #[arg(long, default_value = "")]
-    date: String,
+    /// Date for the log; that of the shot if not given
+    #[arg(long)]
+    date: Option<String>,
 
     /// Plot a log over time instead, to the page given with `-o`
     #[arg(long, value_name = "LOG", requires = "output", conflicts_with_all = ["profile", "chart_shot"])]
@@ -63,8 +64,11 @@ pub(crate) struct Verify {
     overwrite: bool,
 }
 
-fn preset(name: &str) -> Result<Limits, String> {
-    let found = PRESETS.iter().find(|(n, _)| *n == name).map(|(_, limits)| *limits);
+/// Limits with the name of their guideline.
+type Preset = (&'static str, Limits);
+
+fn preset(name: &str) -> Result<Preset, String> {
+    let found = PRESETS.iter().find(|(n, _)| *n == name).copied();
     let names: Vec<&str> = PRESETS.iter().map(|(n, _)| *n).collect();
     found.ok_or_else(|| format!("`{name}` is no preset; there are {}", names.join(", ")))
 }
@@ -74,7 +78,7 @@ impl Verify {
         if let (Some(log), Some(output)) = (&self.history, &self.output) {
             let (lines, torn) = read_log(log)?;
             if torn > 0 {
-                crate::say(format_args!("warning: {}: {torn} lines cannot be read", log.display()));
+                crate::say(format_args!("warning: {}: {torn} lines cannot be read", shown(log)));
             }
             write_text(output, &history(&lines), self.overwrite)?;
             return Ok(Outcome::Done);
@@ -82,10 +86,10 @@ impl Verify {
         let (Some(profile), Some(file)) = (&self.profile, &self.chart_shot) else {
             bail!("give a profile and a shot of a chart");
         };
-        let profile = store().choose(profile)?.profile;
-        let request =
-            self.shot.request(std::slice::from_ref(file), std::slice::from_ref(&self.light), None, "")?;
-        let found = match verify(&profile, &request, &Settings::default()) {
+        let Found { profile, place } = store().choose(profile)?;
+        let request = self.shot.request(&[], &[], None, "")?;
+        let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
+        let found = match verify(&profile, file, light.as_ref(), &request, &Settings::default()) {
             Ok(found) => found,
             Err(fault) => {
                 crate::say(format_args!("error: {}", crate::hint::words(&fault)));
@@ -93,41 +97,61 @@ impl Verify {
             }
         };
         let judgement = &found.judgement;
-        let own = Limits { mean: self.max_mean, max: self.max, ..Limits::default() };
-        let mut broken = own.broken(judgement);
-        broken.extend(self.preset.iter().flat_map(|preset| preset.broken(judgement)));
+        let mut broken = self.own_limits().broken(judgement);
+        broken.extend(self.preset.iter().flat_map(|(_, limits)| limits.broken(judgement)));
         if !common.quiet {
-            say(file, judgement);
+            say(file, &found, self.light.is_none());
         }
         if let Some(log) = &self.log {
-            append(log, &self.log_line(file, profile.camera().name(), &found, broken.is_empty()))?;
+            append(log, &self.log_line(profile.camera().name(), place, &found, broken.is_empty()))?;
         }
         for fault in &broken {
-            crate::say(format_args!("error: {}: {fault}", file.display()));
+            crate::say(format_args!("error: {}: {fault}", shown(file)));
         }
         Ok(if broken.is_empty() { Outcome::Done } else { Outcome::Rejected })
     }
 
-    fn log_line(&self, file: &Path, camera: String, found: &Verification, passed: bool) -> LogLine {
+    fn own_limits(&self) -> Limits {
+        Limits { mean: self.max_mean, max: self.max, ..Limits::default() }
+    }
+
+    fn log_line(&self, camera: String, profile: String, found: &Verification, keeps: bool) -> LogLine {
         let patches = found.judgement.patches.iter().zip(&found.shot.patches);
         let brightest = patches.max_by(|(a, _), (b, _)| a.reference.y.total_cmp(&b.reference.y));
+        let own = self.own_limits();
+        let limits = [own, self.preset.map_or_else(Limits::default, |(_, limits)| limits)];
+        let limits: Vec<String> = limits.iter().map(ToString::to_string).filter(|l| !l.is_empty()).collect();
         LogLine {
-            date: self.date.clone(),
-            file: file.to_owned(),
+            date: self.date.clone().or_else(|| found.shot.date.clone()).unwrap_or_default(),
+            file: found.shot.path.clone(),
             camera,
-            light: self.light.clone(),
+            light: found.light.light.name.clone(),
             de2000: found.judgement.errors.de2000,
             white: brightest.map_or([0.0; 3], |(_, p)| p.rgb),
-            passed,
+            outcome: match keeps {
+                _ if limits.is_empty() => Judged::Unjudged,
+                true => Judged::Passed,
+                false => Judged::Failed,
+            },
+            profile,
+            preset: self.preset.map_or_else(String::new, |(name, _)| name.to_owned()),
+            limits: limits.join("; "),
         }
     }
 }
 
-fn say(file: &Path, judgement: &Judgement) {
+fn say(file: &Path, found: &Verification, is_light_free: bool) {
+    let judgement = &found.judgement;
+    if is_light_free {
+        let light = &found.light.light.name;
+        let why =
+            if found.light_assumed { "assumed; `--light` names it" } else { "as the shot's white shows" };
+        crate::say(format_args!("{}: light {light} ({why})", shown(file)));
+    }
     let s = judgement.errors.de2000;
     crate::say(format_args!(
         "{}: dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2}",
-        file.display(),
+        shown(file),
         s.mean,
         s.median,
         s.p95,

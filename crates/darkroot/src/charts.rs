@@ -5,8 +5,8 @@ use std::path::Path;
 use darkroot_chart::{ChartLayout, Reference, ReferenceColour};
 use sha2::{Digest, Sha256};
 
-use crate::Error;
 use crate::fault::ChartError;
+use crate::{Error, files};
 
 /// A reference and where it is from.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,8 @@ pub fn layout(text: &str) -> Result<ChartLayout, Error> {
     }
     let path = Path::new(text);
     if path.is_file() {
-        let content = std::fs::read_to_string(path).map_err(|e| Error::read(path, e))?;
+        let content = String::from_utf8(files::read_text(path)?);
+        let content = content.map_err(|_| Error::chart(path, ChartError::NotText))?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let read =
@@ -77,7 +78,7 @@ pub fn reference(text: Option<&str>, layout: &ChartLayout) -> Result<NamedRefere
         return Ok(found);
     }
     let path = Path::new(text);
-    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
+    let bytes = files::read_text(path)?;
     let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
     let Ok(content) = String::from_utf8(bytes) else {
         return fault(ChartError::NotText);

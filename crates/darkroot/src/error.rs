@@ -7,13 +7,14 @@ use darkroot_calibrate::{CalibrateError, LightSource};
 
 use crate::SettingsError;
 use crate::fault::{ChartError, NeutralError, SpectraError};
+use crate::{quoted, shown};
 
 /// Why a file could not be developed or inspected.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The input cannot be read.
-    #[error("{path}: cannot be read: {}", why_unread(source), path = path.display())]
+    #[error("{path}: cannot be read: {}", why_unread(source), path = shown(path))]
     Read {
         /// The file.
         path: PathBuf,
@@ -21,7 +22,7 @@ pub enum Error {
         source: io::Error,
     },
     /// The input is no raw file, or damaged.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Raw {
         /// The file.
         path: PathBuf,
@@ -29,7 +30,7 @@ pub enum Error {
         source: darkroot_raw::Error,
     },
     /// The capture cannot be developed as asked.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Plan {
         /// The file.
         path: PathBuf,
@@ -37,7 +38,7 @@ pub enum Error {
         source: darkroot_develop::Error,
     },
     /// The profile file is unusable.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Profile {
         /// The profile's file.
         path: PathBuf,
@@ -45,7 +46,7 @@ pub enum Error {
         source: darkroot_profile::Error,
     },
     /// The DCP is unusable as a profile.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Dcp {
         /// The file.
         path: PathBuf,
@@ -53,7 +54,7 @@ pub enum Error {
         source: darkroot_profile::export::Error,
     },
     /// A file of spectra is unusable.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Spectra {
         /// The file.
         path: PathBuf,
@@ -61,13 +62,13 @@ pub enum Error {
         source: SpectraError,
     },
     /// Neither a profile file nor a camera with a profile.
-    #[error("{text}: is neither a profile file nor a camera with a profile")]
+    #[error("{}: is neither a profile file nor a camera with a profile", shown(text))]
     NoProfile {
         /// As it was given.
         text: String,
     },
     /// A shot of a chart cannot be used.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Chart {
         /// The file.
         path: PathBuf,
@@ -75,7 +76,7 @@ pub enum Error {
         source: ChartError,
     },
     /// A raw file that does not say what an export needs.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Neutral {
         /// The file.
         path: PathBuf,
@@ -83,15 +84,20 @@ pub enum Error {
         source: NeutralError,
     },
     /// A light that nobody knows.
-    #[error("`{text}` is no light; known are {}", crate::light::known())]
+    #[error(
+        "`{}` is no light{}; known are {}", quoted(text),
+        meant.as_ref().map_or_else(String::new, |name| format!("; did you mean `{name}`?")), crate::light::known()
+    )]
     Light {
         /// As it was given.
         text: String,
+        /// The light that may have been meant.
+        meant: Option<String>,
     },
     /// Two shots under one light at one exposure, and nobody said what they are for.
     #[error(
         "{one} and {other} were both taken under {light} and at one exposure: they can be averaged, or one of them has \
-         another light", one = one.display(), other = other.display()
+         another light", one = shown(one), other = shown(other)
     )]
     SeveralShots {
         /// One of the shots.
@@ -114,9 +120,9 @@ pub enum Error {
     NoLight,
     /// The profile is for another camera.
     #[error(
-        "{path}: is a profile for {of}, but {picture} was taken with {camera}; choose another profile, or add the camera to \
-         its `aliases` if they are the same", path = path.display(),
-        picture = picture.as_deref().map_or("the picture".into(), Path::to_string_lossy)
+        "{path}: is a profile for {of}, but {picture} was taken with {}; choose another profile, or add the camera to \
+         its `aliases` if they are the same", shown(camera), path = shown(path),
+        picture = picture.as_deref().map_or("the picture".into(), shown)
     )]
     OtherCamera {
         /// The profile's file.
@@ -129,13 +135,13 @@ pub enum Error {
         camera: String,
     },
     /// The output exists.
-    #[error("{path}: exists already", path = path.display())]
+    #[error("{path}: exists already", path = shown(path))]
     Exists {
         /// The output.
         path: PathBuf,
     },
     /// The output cannot be written.
-    #[error("{path}: cannot be written: {}", why_unwritten(source), path = path.display())]
+    #[error("{path}: cannot be written: {}", why_unwritten(source), path = shown(path))]
     Write {
         /// The output.
         path: PathBuf,
@@ -143,7 +149,7 @@ pub enum Error {
         source: io::Error,
     },
     /// Settings that contradict each other or the output's format.
-    #[error("{path}: cannot be written: {source}", path = path.display())]
+    #[error("{path}: cannot be written: {}", sentence(source), path = shown(path))]
     Settings {
         /// The output.
         path: PathBuf,
@@ -151,13 +157,13 @@ pub enum Error {
         source: SettingsError,
     },
     /// The disk of the output is full.
-    #[error("{path}: cannot be written: the disk is full; make room and run again", path = path.display())]
+    #[error("{path}: cannot be written: the disk is full; make room and run again", path = shown(path))]
     DiskFull {
         /// The output.
         path: PathBuf,
     },
     /// The format cannot hold the picture.
-    #[error("{path}: {source}", path = path.display())]
+    #[error("{path}: {}", sentence(source), path = shown(path))]
     Encode {
         /// The output.
         path: PathBuf,
@@ -165,25 +171,25 @@ pub enum Error {
         source: darkroot_encode::Error,
     },
     /// The output is the input.
-    #[error("{path}: is the raw file itself and would be overwritten; choose another name", path = path.display())]
+    #[error("{path}: is the raw file itself and would be overwritten; choose another name", path = shown(path))]
     OverInput {
         /// The file.
         path: PathBuf,
     },
     /// The file has no embedded preview.
-    #[error("{path}: has no embedded JPEG preview; develop it instead", path = path.display())]
+    #[error("{path}: has no embedded JPEG preview; develop it instead", path = shown(path))]
     NoPreview {
         /// The file.
         path: PathBuf,
     },
     /// Somebody cancelled it.
-    #[error("{path}: was cancelled", path = path.display())]
+    #[error("{path}: was cancelled", path = shown(path))]
     Cancelled {
         /// The file.
         path: PathBuf,
     },
     /// The second engine failed.
-    #[error("{path}: the engine imagepipe cannot develop it ({reason})", path = path.display())]
+    #[error("{path}: the engine imagepipe cannot develop it ({})", shown(reason), path = shown(path))]
     Engine {
         /// The file.
         path: PathBuf,
@@ -227,6 +233,18 @@ impl Error {
             _ => Self::Write { path, source },
         }
     }
+}
+
+/// What is wrong, in one line, whatever texts of the file stand in it.
+fn sentence(source: &impl std::fmt::Display) -> String {
+    /// In characters: more than any sentence of ours has, if the file puts nothing into it.
+    const MOST: usize = 1000;
+    let mut line = shown(&source.to_string());
+    if let Some((end, _)) = line.char_indices().nth(MOST) {
+        line.truncate(end);
+        line += "...";
+    }
+    line
 }
 
 /// Why the system does not read a file, in words, with what to do.

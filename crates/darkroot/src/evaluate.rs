@@ -10,7 +10,7 @@ use darkroot_profile::{Errors, Kind, Order, Summary};
 
 use crate::fault::SpectraError;
 use crate::light::LightSource;
-use crate::{Error, spectra};
+use crate::{Error, files, shown, spectra};
 
 /// Models of the papers, in their sequence.
 pub const MODELS: [Kind; 7] = [
@@ -56,12 +56,13 @@ pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
     };
     let mut all = spectra::read(&file)?;
     if let Some(list) = list {
-        let names = std::fs::read_to_string(&list).map_err(|e| Error::read(&list, e))?;
+        let names = String::from_utf8(files::read_text(&list)?);
+        let names = names.map_err(|_| Error::spectra(&list, SpectraError::NotText))?;
         let names: Vec<String> =
             names.lines().map(|l| l.trim().to_owned()).filter(|l| !l.is_empty()).collect();
-        all = all.only(&names).map_err(|name| {
-            Error::spectra(&file, SpectraError::Missing { name, list: list.display().to_string() })
-        })?;
+        all = all
+            .only(&names)
+            .map_err(|name| Error::spectra(&file, SpectraError::Missing { name, list: shown(&list) }))?;
     }
     Ok(ReflectanceSet { name: name.to_owned(), reflectances: all.reflectances() })
 }

@@ -6,6 +6,8 @@ use darkroot_chart::layout::LayoutError;
 use darkroot_chart::reference::ReferenceError;
 use darkroot_colour::measured::SpectrumError;
 
+use crate::quoted;
+
 /// Why a shot, a chart or a reference cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -121,13 +123,13 @@ pub enum SpectraError {
     #[error("is no table of spectra: {0}")]
     Table(#[from] csv::Error),
     /// A wavelength that is no number.
-    #[error("has `{cell}` where a wavelength in nm should stand")]
+    #[error("has `{}` where a wavelength in nm should stand", quoted(cell))]
     Wavelength {
         /// What stands there.
         cell: String,
     },
     /// A value that is no number.
-    #[error("`{name}` has `{cell}` where a number should stand")]
+    #[error("`{}` has `{}` where a number should stand", quoted(name), quoted(cell))]
     Number {
         /// Name of the spectrum.
         name: String,
@@ -135,7 +137,7 @@ pub enum SpectraError {
         cell: String,
     },
     /// A spectrum that cannot be used.
-    #[error("`{name}`: {source}")]
+    #[error("`{}`: {source}", quoted(name))]
     Spectrum {
         /// Its name.
         name: String,
@@ -152,7 +154,7 @@ pub enum SpectraError {
         count: usize,
     },
     /// A light that the file does not have.
-    #[error("has no light `{name}`; it has {}", list(names))]
+    #[error("has no light `{}`; it has {}", quoted(name), list(names))]
     NoLight {
         /// As it was asked for.
         name: String,
@@ -160,7 +162,7 @@ pub enum SpectraError {
         names: Vec<String>,
     },
     /// Several lights, and none was named.
-    #[error("has {} lights ({}); name one: {file}:{}", names.len(), list(names), names.first().map_or("NAME", String::as_str))]
+    #[error("has {} lights ({}); name one: {file}:{}", names.len(), list(names), names.first().map_or("NAME".to_owned(), |name| quoted(name)))]
     SeveralLights {
         /// The file, as it was given.
         file: String,
@@ -168,7 +170,7 @@ pub enum SpectraError {
         names: Vec<String>,
     },
     /// A light that nobody sees.
-    #[error("`{name}` has no luminance; give the relative power of a light")]
+    #[error("`{}` has no luminance; give the relative power of a light", quoted(name))]
     Dark {
         /// Its name.
         name: String,
@@ -177,7 +179,7 @@ pub enum SpectraError {
     #[error("is no set; write NAME=FILE.csv or NAME=FILE.csv:LIST.txt")]
     NoSet,
     /// A spectrum of a list that the file does not have.
-    #[error("has no spectrum `{name}`, which {list} asks for")]
+    #[error("has no spectrum `{}`, which {list} asks for", quoted(name))]
     Missing {
         /// Its name.
         name: String,
@@ -188,7 +190,7 @@ pub enum SpectraError {
 
 fn list(names: &[String]) -> String {
     const MOST: usize = 8;
-    let first: Vec<&str> = names.iter().take(MOST).map(String::as_str).collect();
+    let first: Vec<String> = names.iter().take(MOST).map(|name| quoted(name)).collect();
     first.join(", ") + if names.len() > MOST { ", ..." } else { "" }
 }
 

@@ -17,7 +17,7 @@ use crate::{Error, Settings};
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Inspection {
     /// The file.
-    #[serde(serialize_with = "crate::files::as_text")]
+    #[serde(serialize_with = "crate::path_text::serialize")]
     pub input: PathBuf,
     /// Camera, by its common name.
     pub camera: String,
@@ -180,7 +180,7 @@ pub fn save_preview(input: &Path, output: &Path, overwrite: bool) -> Result<dark
     let preview =
         darkroot_raw::preview(&bytes).map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     let preview = preview.ok_or_else(|| Error::NoPreview { path: input.to_owned() })?;
-    files::write_whole(output, &preview.jpeg, overwrite)?;
+    files::write_whole(output, &preview.jpeg, None, overwrite)?;
     Ok(preview)
 }
 

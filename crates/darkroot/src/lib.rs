@@ -12,8 +12,8 @@
 //! ```
 //!
 //! [`naming`] decides where outputs go and finds collisions before anything is written, [`develop()`] makes one
-//! file, [`inspect()`] says what a file is. Outputs are written beside their place and renamed when complete: an
-//! output is absent, the old one, or the whole new one.
+//! file, [`inspect()`] says what a file is. Outputs get their names when they are complete: an output is
+//! absent, the old one, or the whole new one.
 //!
 //! **What it does not do:** it prints nothing and reads no arguments.
 
@@ -72,6 +72,14 @@ pub mod report;
 
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};
+
+mod shown;
+pub use shown::{json_lines, lines, quoted, shown};
+
+mod nearest;
+pub use nearest::nearest;
+
+pub mod path_text;
 
 pub mod files;
 pub use files::{abandon, write_text};

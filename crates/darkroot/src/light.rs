@@ -5,6 +5,7 @@ use std::path::Path;
 pub use darkroot_calibrate::LightSource;
 
 use crate::fault::SpectraError;
+use crate::shown;
 use crate::{Error, spectra};
 
 /// Finds a light: what [`LightSource::by_name`] knows, or a file of spectra ("lamp.csv", and "lamps.csv:NAME" where it has
@@ -26,14 +27,42 @@ pub(crate) fn known() -> String {
     )
 }
 
+/// Lights by other names that people have for them.
+const ALSO: [(&[&str], &str); 7] = [
+    (&["daylight", "day", "sun", "sunlight", "flash"], "D55"),
+    (&["cloudy", "overcast", "noon"], "D65"),
+    (&["shade", "north"], "D75"),
+    (&["tungsten", "incandescent", "bulb", "halogen"], "A"),
+    (&["tl84"], "FL11"),
+    (&["cwf", "coolwhite", "fluorescent"], "FL2"),
+    (&["tl83", "u30"], "FL12"),
+];
+
+/// The light that a person may have meant.
+fn meant(text: &str) -> Option<String> {
+    let low = text.trim().to_lowercase().replace(['-', ' '], "");
+    let temperature =
+        low.parse::<f64>().ok().map(|_| format!("{low}K")).filter(|k| LightSource::by_name(k).is_some());
+    let also =
+        || ALSO.iter().find(|(names, _)| names.contains(&low.as_str())).map(|(_, name)| (*name).to_owned());
+    let near = || crate::nearest(&low, LightSource::names()).map(str::to_owned);
+    temperature.or_else(also).or_else(near)
+}
+
+/// Whether a text that names no file can only have meant one: it says in which folder, or has an ending of letters.
+fn is_file_name(path: &Path) -> bool {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
+    path.components().count() > 1 || ending.starts_with(|c: char| c.is_ascii_alphabetic())
+}
+
 fn of_file(text: &str) -> Result<LightSource, Error> {
     let whole = Path::new(text);
     let (path, name) = match text.rsplit_once(':') {
         Some((path, name)) if !whole.is_file() => (Path::new(path), Some(name)),
         _ => (whole, None),
     };
-    if !path.is_file() {
-        return Err(Error::Light { text: text.to_owned() });
+    if !is_file_name(path) && !path.is_file() {
+        return Err(Error::Light { text: text.to_owned(), meant: meant(text) });
     }
     let lights = spectra::read(path)?.lights();
     let wrong = |fault: SpectraError| Error::spectra(path, fault);
@@ -45,7 +74,7 @@ fn of_file(text: &str) -> Result<LightSource, Error> {
             .find(|(n, _)| n == name)
             .ok_or_else(|| wrong(SpectraError::NoLight { name: name.to_owned(), names: names() }))?,
         (None, _) => {
-            let file = path.display().to_string();
+            let file = shown(path);
             return Err(wrong(SpectraError::SeveralLights { file, names: names() }));
         }
     };
@@ -62,9 +91,27 @@ mod tests {
 
     #[test]
     fn what_is_no_light_is_said() {
-        for text in ["moon", "90K", "0.9,0.9", "no/such.csv", "nanK"] {
+        for text in ["moon", "90K", "0.9,0.9", "nanK", "A.1"] {
             let message = find(text).unwrap_err().to_string();
             assert!(message.contains("LED-B3") && message.contains(text), "{message}");
+        }
+        for (text, meant) in [
+            ("6500", "6500K"),
+            ("daylight", "D55"),
+            ("Tungsten", "A"),
+            ("TL84", "FL11"),
+            ("TL-84", "FL11"),
+            ("D56", "D5"),
+        ] {
+            let message = find(text).unwrap_err().to_string();
+            assert!(message.contains("did you mean") && message.contains(meant), "{message}");
+        }
+        for (names, light) in ALSO {
+            assert!(names.iter().all(|name| find(name).is_err()) && find(light).is_ok(), "{light}");
+        }
+        for text in ["no/such.csv", "lamp.csv", "lamps.csv:two"] {
+            let message = find(text).unwrap_err().to_string();
+            assert!(message.contains("no such file") && !message.contains("LED-B3"), "{message}");
         }
     }
 

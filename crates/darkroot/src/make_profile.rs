@@ -13,6 +13,7 @@ use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
 use crate::fault::ChartError;
 use crate::light::LightSource;
 use crate::shot::{Gate, Shot, ShotOptions, View, common_name, open, refuse};
+use crate::shown;
 use crate::{Error, Settings};
 
 /// Red or blue against green, as a natural logarithm, from which the camera's white is another than the light's.
@@ -58,6 +59,14 @@ pub struct MadeLight {
     pub white_balance: Option<[f64; 3]>,
     /// The first shot, to look at.
     pub view: View,
+}
+
+impl MadeLight {
+    /// The light that the shots themselves show, by the camera's own matrices; none where there are none.
+    pub fn light_found(&self) -> Option<LightSource> {
+        let matrix = self.view.matrix.as_ref()?;
+        LightSource::of_white(matrix.white_of(self.calibrated.white_rgb))
+    }
 }
 
 /// A profile and how it came about.
@@ -154,7 +163,7 @@ fn between(
     for (worst, check) in series::departures(members).into_iter().zip(checks) {
         let Some((worst, departure)) = worst else { continue };
         let path = &shots[worst].path;
-        let gate = check(Departure::of(&path.display().to_string(), departure));
+        let gate = check(Departure::of(&shown(path), departure));
         refuse(path, std::slice::from_ref(&gate), request.options.accept)?;
         gates.push(gate);
     }

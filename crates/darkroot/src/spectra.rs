@@ -11,8 +11,8 @@ use sha2::{Digest, Sha256};
 
 use darkroot_profile::Sensitivities;
 
-use crate::Error;
 use crate::fault::SpectraError;
+use crate::{Error, files};
 
 /// The spectra of one file.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +52,7 @@ impl SpectraFile {
 /// # Errors
 /// A file that cannot be read, or is not laid out as above.
 pub fn read(path: &Path) -> Result<SpectraFile, Error> {
-    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
+    let bytes = files::read_text(path)?;
     let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
     let wrong = |fault: SpectraError| Error::spectra(path, fault);
     let text = String::from_utf8(bytes).map_err(|_| wrong(SpectraError::NotText))?;

@@ -10,6 +10,7 @@ use darkroot_profile::{Profile, ProfileCamera};
 
 use crate::Error;
 use crate::settings::ProfileChoice;
+use crate::shown;
 
 /// Path inside `profiles/` and text of every profile of this build.
 const BUILTIN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/profiles.rs"));
@@ -57,7 +58,7 @@ impl Entry {
     /// A file of the user's folder. All that can be wrong with a file is said here.
     fn read(path: &Path) -> Result<Self, Error> {
         if !has_extension(path, "dcp") {
-            return Ok(Self::of(read(path)?, path.display().to_string()));
+            return Ok(Self::of(read(path)?, shown(path)));
         }
         let bytes = crate::files::read(path)?;
         let camera = dcp::camera(&bytes).map_err(|source| Error::Dcp { path: path.to_owned(), source })?;
@@ -65,7 +66,7 @@ impl Entry {
     }
 
     fn get(&self) -> Option<&Found> {
-        let place = || self.path.display().to_string();
+        let place = || shown(&self.path);
         let make = || read(&self.path).ok().map(|profile| Found { profile, place: place() });
         self.found.get_or_init(make).as_ref()
     }
@@ -112,12 +113,21 @@ impl ProfileStore {
     /// # Errors
     /// Neither of both, or a file that is no usable profile.
     pub fn choose(&self, text: &str) -> Result<Found, Error> {
-        let path = Path::new(text);
-        if path.is_file() {
-            return Ok(Found { profile: read(path)?, place: text.to_owned() });
+        self.named(Path::new(text))
+    }
+
+    /// As [`Self::choose`]. What is called like a file and is not there is told as a missing file.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn named(&self, path: &Path) -> Result<Found, Error> {
+        let text = path.to_str();
+        if path.exists() || crate::files::is_stream(path) || text.is_none_or(crate::settings::is_file_name) {
+            return Ok(Found { profile: read(path)?, place: shown(path) });
         }
-        let named = self.entries.iter().filter(|e| e.camera.is("", text)).find_map(Entry::get);
-        named.cloned().ok_or_else(|| Error::NoProfile { text: text.to_owned() })
+        let camera = text.unwrap_or_default();
+        let named = self.entries.iter().filter(|e| e.camera.is("", camera)).find_map(Entry::get);
+        named.cloned().ok_or_else(|| Error::NoProfile { text: camera.to_owned() })
     }
 
     /// The profile that gives a camera's colours; `None` where the file's own matrices do.
@@ -136,7 +146,7 @@ impl ProfileStore {
                 place: Cow::Borrowed(&found.place),
             })),
             ProfileChoice::File(path) => {
-                let profile = read(path)?;
+                let Found { profile, place } = self.named(path)?;
                 if !is_for(&profile, camera) {
                     return Err(Error::OtherCamera {
                         path: path.clone(),
@@ -145,8 +155,7 @@ impl ProfileStore {
                         camera: camera.name(),
                     });
                 }
-                let place = Cow::Owned(path.display().to_string());
-                Ok(Some(ChosenProfile { profile: Cow::Owned(profile), place }))
+                Ok(Some(ChosenProfile { profile: Cow::Owned(profile), place: Cow::Owned(place) }))
             }
         }
     }
@@ -181,7 +190,7 @@ fn is_of(of: &ProfileCamera, camera: &Camera) -> bool {
 /// # Errors
 /// A file that cannot be read or is no usable profile.
 pub fn read(path: &Path) -> Result<Profile, Error> {
-    let bytes = crate::files::read(path)?;
+    let bytes = crate::files::read_text(path)?;
     if dcp::is_dcp(&bytes) {
         let imported = dcp::import(&bytes);
         return imported.map(|i| i.profile).map_err(|source| Error::Dcp { path: path.to_owned(), source });
@@ -198,7 +207,15 @@ pub fn read(path: &Path) -> Result<Profile, Error> {
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
 pub fn write(profile: &Profile, path: &Path, overwrite: bool) -> Result<(), Error> {
-    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), overwrite)
+    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), None, overwrite)
+}
+
+/// As [`write()`], below a folder of outputs; a profile that is there is replaced.
+///
+/// # Errors
+/// A link below the folder, or a file that cannot be written.
+pub fn write_below(profile: &Profile, path: &Path, tree: &crate::files::Tree) -> Result<(), Error> {
+    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), Some(tree), true)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {

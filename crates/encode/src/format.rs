@@ -91,6 +91,11 @@ impl Format {
         }
     }
 
+    /// Bits that a sample of so many bits has in the file: AVIF codes 8 bits in 10, so that its rounding adds none.
+    pub fn stored_bits(self, bits: u8) -> u8 {
+        if self == Self::Avif { 10 } else { bits }
+    }
+
     /// Largest width and height in pixels.
     pub fn largest_side(self) -> usize {
         match self {

@@ -1,9 +1,10 @@
-//! The house in order: arrows between crates, profiles, samples, lints, and no traces of the machine it was built on.
+//! The house in order: arrows between crates, profiles, samples, lints, doors, and no traces of the machine it was built on.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
 
 mod arrows;
 mod circles;
+mod doors;
 mod origins;
 mod profiles;
 mod samples;

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use darkroot::ProfileStore;
+use darkroot::{ProfileStore, path_text};
 use darkroot_batch::{
     ChartShot, CrewOptions, OnCollision, PlanOptions, Search, Shard, Wording, Workers, names, system,
 };
@@ -18,7 +18,7 @@ use crate::picture::Picture;
 pub(crate) struct Work {
     /// Folders (with all folders in them), files, patterns ('shoot/**/*.NEF')
     #[arg(required = true, value_name = "IN")]
-    pub(crate) inputs: Vec<String>,
+    pub(crate) inputs: Vec<PathBuf>,
 
     /// Folder of the pictures; the tree of IN is mirrored below it
     #[arg(short, long, required = true, value_name = "OUT", help_heading = "Output")]
@@ -69,9 +69,9 @@ pub(crate) struct Work {
     #[arg(long, value_name = "FILE", requires = "chart_shot", help_heading = "Session colour")]
     reference: Option<String>,
 
-    /// The light of the session, as `darkroot profile` takes it
-    #[arg(long, value_name = "LIGHT", default_value = "D50", help_heading = "Session colour")]
-    light: String,
+    /// The light of the session, as `darkroot profile` takes it; the one that each chart shot shows if not given
+    #[arg(long, value_name = "LIGHT", requires = "chart_shot", help_heading = "Session colour")]
+    light: Option<String>,
 
     /// Files developed at once; one for each thread if not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), help_heading = "Machine")]
@@ -109,7 +109,7 @@ impl Work {
 
     pub(crate) fn search(&self) -> Search {
         Search {
-            inputs: self.inputs.clone(),
+            inputs: self.inputs.iter().map(|input| path_text::text(input)).collect(),
             flat: self.no_recursive,
             include: self.include.clone(),
             exclude: self.exclude.clone(),
@@ -143,7 +143,9 @@ impl Work {
             let layout = darkroot::charts::layout(chart)?;
             darkroot::charts::reference(self.reference.as_deref(), &layout)?;
         }
-        darkroot::light::find(&self.light)?;
+        if let Some(light) = &self.light {
+            darkroot::light::find(light)?;
+        }
         Ok(Some(ChartShot {
             file: (text != "auto").then(|| PathBuf::from(text)),
             layout: self.chart.clone(),

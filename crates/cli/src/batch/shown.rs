@@ -9,6 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 
 use crate::Common;
+use darkroot::{path_text, shown};
 
 pub(crate) struct Shown {
     common: Common,
@@ -33,7 +34,7 @@ impl Shown {
 
     pub(crate) fn line(&self, value: &serde_json::Value) -> Result<()> {
         if self.json {
-            let mut out = std::io::stdout().lock();
+            let mut out = crate::out::json();
             writeln!(out, "{value}")?;
             out.flush()?;
         }
@@ -61,17 +62,17 @@ impl Shown {
         for item in &plan.items {
             self.line(&planned(item))?;
             if !self.json {
-                let input = item.source.path.display();
-                let output = plan.out.join(&item.output);
+                let input = shown(&item.source.path);
+                let output = shown(&item.place(&plan.out));
                 let words = match &item.state {
                     State::Todo(why) => {
                         let size = megabytes(item.source.size);
-                        format!("{input} -> {} ({size}, {})", output.display(), reason(*why))
+                        format!("{input} -> {} ({size}, {})", output, reason(*why))
                     }
-                    State::Done(_) => format!("{input} -> {} (unchanged)", output.display()),
+                    State::Done(_) => format!("{input} -> {} (unchanged)", output),
                     State::Conflict(conflict) => format!("error: {}", crate::hint::words(conflict)),
                 };
-                writeln!(std::io::stdout(), "{words}")?;
+                writeln!(crate::out::lines(), "{words}")?;
             }
         }
         self.faults(plan);
@@ -114,7 +115,7 @@ impl Shown {
             if item.state == State::Todo(Why::OutputDamaged) {
                 self.warn(&format!(
                     "{}: was damaged on the disk since it was written; it is made anew",
-                    plan.out.join(&item.output).display()
+                    shown(&item.place(&plan.out))
                 ));
             }
         }
@@ -134,22 +135,23 @@ impl Shown {
     pub(crate) fn event(&mut self, event: &Event<'_>) -> Result<()> {
         match event {
             Event::Begun(item) => {
-                self.line(&json!({ "event": "begun", "input": item.source.path, "output": item.output }))
+                self.line(&json!({ "event": "begun", "input": path_text::text(&item.source.path), "output": item.output }))
             }
             Event::Done { item, done, colours, .. } => {
                 self.pixels += done.width as u64 * done.height as u64;
                 self.advance();
                 if !self.common.quiet && (!self.terminal || self.common.verbose) {
                     let mut words = format!(
-                        "{} -> {} ({} x {}, {:.2} s; {colours})",
-                        item.source.path.display(),
-                        item.output,
+                        "{} -> {} ({} x {}, {:.2} s; {})",
+                        shown(&item.source.path),
+                        item.output_shown(),
                         done.width,
                         done.height,
-                        done.seconds
+                        done.seconds,
+                        shown(*colours)
                     );
                     for note in done.notes.iter().filter(|_| self.common.verbose) {
-                        words += &format!("\n  note: {note}");
+                        words += &format!("\n  note: {}", shown(note));
                     }
                     self.say(&words);
                 }
@@ -165,20 +167,20 @@ impl Shown {
                 }
                 self.say(&format!("error: {words}"));
                 self.line(&json!({
-                    "event": "failed", "input": item.source.path, "output": item.output, "error": words,
+                    "event": "failed", "input": path_text::text(&item.source.path), "output": item.output, "error": words,
                 }))
             }
             Event::Later(item) => {
                 if self.common.verbose {
-                    self.say(&format!("{}: may still be growing; tried again", item.source.path.display()));
+                    self.say(&format!("{}: may still be growing; tried again", shown(&item.source.path)));
                 }
-                self.line(&json!({ "event": "later", "input": item.source.path }))
+                self.line(&json!({ "event": "later", "input": path_text::text(&item.source.path) }))
             }
             Event::Gone(item) => {
                 if self.common.verbose {
-                    self.say(&format!("{}: is not there any more", item.source.path.display()));
+                    self.say(&format!("{}: is not there any more", shown(&item.source.path)));
                 }
-                self.line(&json!({ "event": "gone", "input": item.source.path }))
+                self.line(&json!({ "event": "gone", "input": path_text::text(&item.source.path) }))
             }
             Event::Stopping { words, .. } => {
                 self.say(&format!("error: {words}"));
@@ -227,7 +229,7 @@ fn planned(item: &Item) -> serde_json::Value {
         State::Conflict(conflict) => ("conflict", None, Some(crate::hint::words(conflict))),
     };
     json!({
-        "event": "planned", "input": item.source.path, "output": item.output, "bytes": item.source.size,
+        "event": "planned", "input": path_text::text(&item.source.path), "output": item.output, "bytes": item.source.size,
         "action": action, "why": why, "error": error,
     })
 }

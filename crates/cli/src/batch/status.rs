@@ -26,11 +26,15 @@ pub(crate) struct Status {
 impl Status {
     pub(crate) fn run(self) -> Result<Outcome> {
         let mut all = History::default();
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::out::lines();
         for (name, history) in journal::read_all(&self.out)? {
             let Counts { done, failed, open } = counts(&history);
             if !self.json {
-                writeln!(out, "{name}: {done} done, {failed} failed, {open} begun and not ended")?;
+                writeln!(
+                    out,
+                    "{}: {done} done, {failed} failed, {open} begun and not ended",
+                    darkroot::shown(&name)
+                )?;
             }
             all.merge(history);
         }
@@ -41,7 +45,7 @@ impl Status {
             let failures: Vec<_> =
                 failures.iter().map(|f| json!({ "input": f.input, "error": f.error, "at": f.at })).collect();
             writeln!(
-                out,
+                crate::out::json(),
                 "{}",
                 json!({
                     "done": done, "failed": failed, "open": open, "damaged_lines": all.damaged,
@@ -54,7 +58,7 @@ impl Status {
                 writeln!(out, "{} torn or damaged lines were passed over", all.damaged)?;
             }
             for failure in failures {
-                writeln!(out, "failed: {}", failure.error)?;
+                writeln!(out, "failed: {}", darkroot::shown(&failure.error))?;
             }
         }
         Ok(if failed == 0 { Outcome::Done } else { Outcome::SomeFailed })

@@ -106,21 +106,29 @@ impl Told<'_> {
                 match (&often, why) {
                     (Some(often), Some(why)) => shown.note(&format!("{why}: looking every {often}")),
                     _ => {
-                        let (inputs, out) =
-                            (self.options.search.inputs.join(", "), self.options.plan.out.display());
+                        let (inputs, out) = (
+                            self.options
+                                .search
+                                .inputs
+                                .iter()
+                                .map(|i| named(i))
+                                .collect::<Vec<_>>()
+                                .join(", "),
+                            darkroot::shown(&self.options.plan.out),
+                        );
                         let how = often.map_or_else(String::new, |often| format!(", looking every {often}"));
                         shown.note(&format!("watching {inputs} -> {out}{how}"));
                     }
                 }
                 shown.line(&json!({
-                    "event": "watching", "inputs": self.options.search.inputs, "output_folder": self.options.plan.out,
+                    "event": "watching", "inputs": self.options.search.inputs, "output_folder": darkroot::path_text::text(&self.options.plan.out),
                     "polling_seconds": polling.map(|t| t.as_secs_f64()), "why": why,
                 }))
             }
             Notice::File(event) => shown.event(event),
             Notice::Held { source, words } => {
                 shown.say(&format!("error: {words}"));
-                shown.line(&json!({ "event": "held", "input": source.path, "error": words }))
+                shown.line(&json!({ "event": "held", "input": darkroot::path_text::text(&source.path), "error": words }))
             }
             Notice::Fault(fault) => {
                 let words = crate::hint::words(*fault);
@@ -128,11 +136,11 @@ impl Told<'_> {
                 shown.line(&json!({ "event": "fault", "error": words }))
             }
             Notice::Away(input) => {
-                shown.say(&format!("{input}: is not there; waiting for it"));
+                shown.say(&format!("{}: is not there; waiting for it", named(input)));
                 shown.line(&json!({ "event": "away", "input": input }))
             }
             Notice::Back(input) => {
-                shown.note(&format!("{input}: is there"));
+                shown.note(&format!("{}: is there", named(input)));
                 shown.line(&json!({ "event": "back", "input": input }))
             }
             Notice::Outdated(files) => {
@@ -162,4 +170,9 @@ impl Told<'_> {
             "event": "end", "done": done, "failed": failed, "held": held, "stopped": stopped,
         }))
     }
+}
+
+/// An input, for people.
+fn named(input: &str) -> String {
+    darkroot::shown(&darkroot::path_text::path(input))
 }

@@ -27,6 +27,9 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     if let Some(JournalError::Locked { .. }) = error.downcast_ref() {
         return say("wait for it, or share the work with `--shard I/N`");
     }
+    if let Some(JournalError::OtherSplit { .. }) = error.downcast_ref() {
+        return say("wait for it, or give both runs a `--shard I/N` with the same N");
+    }
     match error.downcast_ref() {
         Some(StopReason::Journal(inner)) => return hint(inner),
         Some(StopReason::Failure(inner)) => return of_failure(inner),

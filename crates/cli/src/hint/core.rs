@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+use darkroot::files::Special;
 use darkroot::{NamingError, RecipeError, SettingsError};
 
 /// What to do about an error of the core.
@@ -18,19 +19,34 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     if let Some(of_settings) = error.downcast_ref() {
         return settings(of_settings);
     }
-    let words = match (error.downcast_ref(), error.downcast_ref()) {
-        (Some(NamingError::OverInput { .. }), _) => "choose another `-o`",
-        (Some(NamingError::Format { .. }), _) => "or add `--format`",
-        (_, Some(RecipeError::Profile { .. })) => "name it with `--profile`",
+    if let Some(of_name) = error.downcast_ref() {
+        return name(of_name).map(str::to_owned);
+    }
+    let words = match error.downcast_ref() {
+        Some(RecipeError::Profile { .. }) => "name it with `--profile`",
         _ => return None,
     };
     Some(words.to_owned())
+}
+
+fn name(error: &NamingError) -> Option<&'static str> {
+    match error {
+        NamingError::OverInput { .. } => Some("choose another `-o`"),
+        NamingError::Format { .. } => Some("or add `--format`"),
+        NamingError::OtherFormat { .. } => Some("or leave out `--format`"),
+        NamingError::NoName { .. } => Some("`-o FILE`, or `-o -` for standard output"),
+        NamingError::Stream { .. } => Some("`-o FOLDER/` takes one"),
+        _ => None,
+    }
 }
 
 fn file(error: &darkroot::Error) -> Option<&'static str> {
     use darkroot::Error as E;
     match error {
         E::Raw { source, .. } => raw(source),
+        E::Read { source, .. } if matches!(Special::of(source), Some(Special::NotAFile { .. })) => {
+            Some("`-` reads standard input")
+        }
         E::Plan { source: darkroot_develop::Error::NoMatrix, .. } => {
             Some("use `--white-balance as-shot`, `auto` or multipliers")
         }

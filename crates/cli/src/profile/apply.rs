@@ -32,7 +32,7 @@ impl Apply {
             place.with_context(|| format!("stdin: has no column `{name}`; its first row must be r,g,b"))
         };
         let columns = [column("r")?, column("g")?, column("b")?];
-        let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+        let mut out = std::io::BufWriter::new(crate::out::ours());
         writeln!(out, "X,Y,Z")?;
         for record in reader.records() {
             let record = record.context("stdin")?;

@@ -4,6 +4,7 @@ use std::io::Write as _;
 
 use anyhow::{Result, bail};
 use clap::Args;
+use darkroot::shown;
 use darkroot_profile::lint::{Severity, check};
 use serde_json::json;
 
@@ -38,7 +39,7 @@ impl Lint {
         if profiles.is_empty() {
             bail!("there are no profiles to check");
         }
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::out::lines();
         let mut worst = Severity::Note;
         for found in &profiles {
             let camera = found.profile.camera().name();
@@ -54,10 +55,11 @@ impl Lint {
                         "value": finding.value,
                         "words": finding.words,
                     });
-                    writeln!(out, "{line}")?;
+                    writeln!(crate::out::json(), "{line}")?;
                 } else {
                     let severity = finding.severity.to_string();
-                    writeln!(out, "{camera}, {}: {severity:7} {}", finding.light, finding.words)?;
+                    let (light, words) = (shown(&finding.light), shown(&finding.words));
+                    writeln!(out, "{}, {light}: {severity:7} {words}", shown(&camera))?;
                 }
             }
         }

@@ -4,6 +4,7 @@ use std::io::Write as _;
 
 use anyhow::Result;
 use clap::Args;
+use darkroot::shown;
 use darkroot_profile::Calibration;
 use serde_json::json;
 
@@ -20,7 +21,7 @@ pub(super) struct List {
 impl List {
     pub(super) fn run(self) -> Result<Outcome> {
         let store = super::store();
-        let mut out = std::io::stdout().lock();
+        let mut out = crate::out::lines();
         let all = store.all();
         let width = all.iter().map(|f| f.profile.camera().name().len()).max().unwrap_or(0);
         for found in &all {
@@ -37,9 +38,9 @@ impl List {
                     "held_out_de2000_mean": profile.calibrations().iter().map(unseen).collect::<Vec<_>>(),
                     "place": found.place,
                 });
-                writeln!(out, "{line}")?;
+                writeln!(crate::out::json(), "{line}")?;
             } else {
-                let (name, lights) = (profile.camera().name(), lights.join(", "));
+                let (name, lights) = (shown(&profile.camera().name()), shown(&lights.join(", ")));
                 writeln!(out, "{name:width$}  {:10}  {lights:12}  {}", models.join(", "), found.place)?;
             }
         }

@@ -11,6 +11,7 @@ use darkroot_profile::Kind;
 use serde_json::json;
 
 use crate::{Common, Outcome, hint};
+use darkroot::shown;
 
 /// How a shot of a chart is read.
 #[derive(Debug, Args)]
@@ -155,7 +156,21 @@ pub(super) struct Make {
 }
 
 impl Make {
-    pub(super) fn run(self, common: Common) -> Result<Outcome> {
+    /// `--light D65 A` names two lights, as `from-spectra` takes them: what stands among the shots, is no file and names
+    /// a light is one.
+    fn take_lights(&mut self) {
+        if self.lights.is_empty() {
+            return;
+        }
+        let is_light = |shot: &mut PathBuf| {
+            !shot.exists() && shot.to_str().is_some_and(|text| light::LightSource::by_name(text).is_some())
+        };
+        let lights: Vec<PathBuf> = self.shots.extract_if(.., is_light).collect();
+        self.lights.extend(lights.iter().map(|light| light.to_string_lossy().into_owned()));
+    }
+
+    pub(super) fn run(mut self, common: Common) -> Result<Outcome> {
+        self.take_lights();
         let Some(first) = self.shots.first() else {
             bail!("give a shot of a chart, or a command; `darkroot help profile` shows both");
         };
@@ -188,11 +203,15 @@ impl Make {
         if self.json {
             for light in &made.lights {
                 use std::io::Write as _;
-                writeln!(std::io::stdout(), "{}", figures(light))?;
+                writeln!(crate::out::json(), "{}", figures(light))?;
             }
         }
         if !common.quiet {
-            crate::say(format_args!("{}: profile for {}", output.display(), made.profile.camera().name()));
+            crate::say(format_args!(
+                "{}: profile for {}",
+                shown(&output),
+                shown(&made.profile.camera().name())
+            ));
             made.lights.iter().for_each(say_light);
         }
         Ok(Outcome::Done)
@@ -202,18 +221,18 @@ impl Make {
 fn say_light(light: &MadeLight) {
     for shot in &light.shots {
         for gate in shot.gates.iter().filter(|g| g.verdict != Verdict::Good) {
-            let (path, advice) = (shot.path.display(), hint::advice(gate));
+            let (path, advice) = (shown(&shot.path), hint::advice(gate));
             crate::say(format_args!("  warning: {path}: {}; {advice}", gate.words()));
         }
         for note in &shot.notes {
-            crate::say(format_args!("  note: {note}"));
+            crate::say(format_args!("  note: {}", shown(note)));
         }
     }
     for gate in light.gates.iter().filter(|g| g.verdict != Verdict::Good) {
         crate::say(format_args!("  warning: {}; {}", gate.words(), hint::advice(gate)));
     }
     for note in &light.calibrated.notes {
-        crate::say(format_args!("  note: {note}"));
+        crate::say(format_args!("  note: {}", shown(note)));
     }
     if let Some([red, _, blue]) = light.white_balance {
         crate::say(format_args!(
@@ -273,7 +292,7 @@ pub(super) fn figures(light: &MadeLight) -> serde_json::Value {
         .iter()
         .map(|s| {
             json!({
-                "file": s.path.display().to_string(),
+                "file": darkroot::path_text::text(&s.path),
                 "corners": s.corners,
                 "confidence": s.confidence,
                 "glare": s.glare,

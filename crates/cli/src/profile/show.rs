@@ -5,6 +5,7 @@ use std::io::Write as _;
 
 use anyhow::Result;
 use clap::Args;
+use darkroot::shown;
 use darkroot::store::Found;
 use darkroot_colour::{Lab, white};
 use darkroot_profile::{Calibration, Errors, Model, polynomial};
@@ -21,16 +22,16 @@ pub(super) struct Show {
 impl Show {
     pub(super) fn run(self) -> Result<Outcome> {
         let found = super::store().choose(&self.profile)?;
-        std::io::stdout().write_all(words(&found).as_bytes())?;
+        crate::out::lines().write_all(words(&found).as_bytes())?;
         Ok(Outcome::Done)
     }
 }
 
 fn words(found: &Found) -> String {
     let profile = &found.profile;
-    let mut text = format!("{} ({})\n", profile.camera().name(), found.place);
+    let mut text = format!("{} ({})\n", shown(&profile.camera().name()), found.place);
     if !profile.camera().aliases.is_empty() {
-        let _ = writeln!(text, "also called    {}", profile.camera().aliases.join("; "));
+        let _ = writeln!(text, "also called    {}", shown(&profile.camera().aliases.join("; ")));
     }
     let origin = profile.origin();
     for (label, value) in [
@@ -42,7 +43,7 @@ fn words(found: &Found) -> String {
         ("program", &origin.program),
     ] {
         if !value.is_empty() {
-            let _ = writeln!(text, "{label:15}{value}");
+            let _ = writeln!(text, "{label:15}{}", shown(value));
         }
     }
     for calibration in profile.calibrations() {
@@ -56,7 +57,7 @@ fn describe(text: &mut String, calibration: &Calibration) {
     let _ = writeln!(
         text,
         "\n{}: xy {:.4}, {:.4}, {:.0} K; model {}",
-        light.name,
+        shown(&light.name),
         light.xy.x,
         light.xy.y,
         light.kelvin(),
@@ -149,6 +150,6 @@ fn plot(text: &mut String, calibration: &Calibration) {
     }
     let worst = calibration.patches.iter().max_by(|a, b| a.de2000.total_cmp(&b.de2000));
     if let Some(patch) = worst {
-        let _ = writeln!(text, "  worst: {} with {:.2}", patch.name, patch.de2000);
+        let _ = writeln!(text, "  worst: {} with {:.2}", shown(&patch.name), patch.de2000);
     }
 }

@@ -36,7 +36,8 @@ impl Desk {
 
     /// What lies below `out` besides pictures and journals.
     fn left_over(&self) -> Vec<String> {
-        let journal = |n: &str| n.starts_with(".darkroot/journal") && n.ends_with(".jsonl");
+        let journal =
+            |n: &str| n.starts_with(".darkroot/journal") && n.ends_with(".jsonl") || n == ".darkroot/running";
         let picture = |n: &str| [".jpg", ".tif", ".png"].iter().any(|e| n.ends_with(e));
         let all = below(&self.path("out"));
         all.into_iter().filter(|n| !journal(n) && (!picture(n) || n.starts_with('.'))).collect()

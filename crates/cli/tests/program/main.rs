@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // Clippy takes the helpers of tests for production code.
 
+mod answers;
 mod batch;
 mod broken;
 mod chart;
@@ -12,10 +13,13 @@ mod help;
 mod inspect;
 mod metadata;
 mod outputs;
+mod paths;
 mod profile_commands;
 mod profiles;
 mod recipe;
+mod special;
 mod stopped;
+mod terminal;
 mod usage;
 mod watch;
 

@@ -176,9 +176,7 @@ fn an_output_over_another_input_is_refused() {
 #[test]
 fn a_folder_that_does_not_exist_is_named() {
     let desk = Desk::with_dng();
-    for output in ["no/o.jpg", "no/{stem}.jpg"] {
-        desk.fails(1, &["develop", "a.dng", "-o", output], &["no", "folder does not exist", "create it"]);
-    }
+    desk.fails(1, &["develop", "a.dng", "-o", "no/o.jpg"], &["no", "folder does not exist", "create it"]);
     assert_eq!(desk.names(), ["a.dng"]);
 }
 

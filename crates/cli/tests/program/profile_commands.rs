@@ -180,7 +180,8 @@ fn rows_that_cannot_be_read_are_named() {
         (&["p.toml", "--light", "A"], "", "no column `r`"),
         (&["p.toml"], "r,g,b\n1,1,1\n", "D65, A; choose one with `--light`"),
         (&["p.toml", "--light", "moon"], "r,g,b\n1,1,1\n", "no light `moon`"),
-        (&["nothing.toml"], "r,g,b\n1,1,1\n", "neither a profile file nor a camera"),
+        (&["nothing.toml"], "r,g,b\n1,1,1\n", "there is no such file"),
+        (&["Nothing D1"], "r,g,b\n1,1,1\n", "neither a profile file nor a camera"),
     ] {
         let run = apply(&desk, arguments, input);
         assert!(run.code == 2 && run.err.contains(words), "{arguments:?} {input:?}: {}", run.err);

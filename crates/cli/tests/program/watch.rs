@@ -124,5 +124,5 @@ fn assert_tidy(desk: &Desk, pictures: &[&str]) {
     let mut expected = vec![".darkroot"];
     expected.extend(pictures);
     assert_eq!(names(&desk.path("out")), expected);
-    assert_eq!(names(&desk.path("out/.darkroot")), ["journal.jsonl"]);
+    assert_eq!(names(&desk.path("out/.darkroot")), ["journal.jsonl", "running"]);
 }

@@ -67,7 +67,7 @@ pub fn develop(
 
 /// Without `overwrite`, an output that exists is an error: before any work is done.
 fn refuse_existing(job: &Job, settings: &Settings) -> Result<(), Error> {
-    if !settings.overwrite && job.output.symlink_metadata().is_ok() {
+    if !settings.overwrite && !files::is_stream(&job.output) && job.output.symlink_metadata().is_ok() {
         return Err(Error::Exists { path: job.output.clone() });
     }
     Ok(())
@@ -135,6 +135,7 @@ pub fn develop_bytes(
     Ok(Report {
         output: output.clone(),
         format: format.name().to_owned(),
+        bits: format.stored_bits(report.bits),
         notes,
         seconds: start.elapsed().as_secs_f64(),
         ..report
@@ -185,8 +186,7 @@ fn write_file(
     fill: impl FnOnce(&mut io::BufWriter<&std::fs::File>) -> Result<(), Unwritten>,
 ) -> Result<(), Error> {
     let output = &job.output;
-    files::write(output, settings.scratch.as_deref(), settings.overwrite, fill).map_err(|failed| match failed
-    {
+    files::write(output, settings.tree.as_ref(), settings.overwrite, fill).map_err(|failed| match failed {
         Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
         Failed::Io(e) | Failed::Other(Unwritten::Encode(darkroot_encode::Error::Io(e))) => {
             Error::write(output, e)

@@ -11,16 +11,16 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// The raw file.
-    #[serde(serialize_with = "crate::files::as_text")]
+    #[serde(serialize_with = "crate::path_text::serialize")]
     pub input: PathBuf,
     /// The picture.
-    #[serde(serialize_with = "crate::files::as_text")]
+    #[serde(serialize_with = "crate::path_text::serialize")]
     pub output: PathBuf,
     /// Its format.
     pub format: String,
     /// Its colour space.
     pub space: String,
-    /// Its bits a sample.
+    /// Its bits a sample, as they stand in the file.
     pub bits: u8,
     /// Its width in pixels.
     pub width: usize,

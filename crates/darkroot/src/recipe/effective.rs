@@ -55,11 +55,14 @@ impl Effective {
     /// what suits the settings.
     ///
     /// # Errors
-    /// Nobody says a format but a name whose ending is none.
+    /// Nobody says a format but a name whose ending is none, or `--format` and the ending of `-o` say different ones.
     pub fn format(&self, target: &Target, settings: &Settings, flags: &Layer) -> Result<Format, NamingError> {
         let asked = settings.format;
         let by_flag = flags.get(Key::FORMAT).is_some_and(|text| text != "auto");
         match (asked, target.format()) {
+            (Some(asked), Ok(Some(named))) if by_flag && asked != named => {
+                Err(NamingError::OtherFormat { path: target.path().to_owned(), named, asked })
+            }
             (Some(format), _) if by_flag => Ok(format),
             (_, Ok(Some(format))) => Ok(format),
             (Some(format), _) => Ok(format),
@@ -119,7 +122,7 @@ impl Effective {
         for (key, (text, origin)) in &self.values {
             let line = format!("{key} = {}", written(*key, text));
             let from = origin.path().map_or_else(|| origin.to_string(), &shown);
-            let from: String = from.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+            let from = crate::shown(&from);
             let _ = writeln!(out, "{line:WIDTH$}  # {from}");
         }
         out
@@ -181,14 +184,15 @@ mod tests {
             let flags = flag.map(|f| Layer::flags([(Key::named("format"), f.to_owned())]).unwrap());
             let flags = flags.as_ref().unwrap_or(&nobody);
             effective.lay(flags);
-            effective.format(&Target::parse(target), &effective.settings().unwrap(), flags)
+            effective.format(&Target::parse(target.as_ref()).unwrap(), &effective.settings().unwrap(), flags)
         };
         assert_eq!(format("auto", None, "out/"), Ok(Format::Jpeg));
         assert_eq!(format("png", None, "out/"), Ok(Format::Png));
         assert_eq!(format("png", None, "o.tif"), Ok(Format::Tiff));
         assert_eq!(format("png", None, "{stem}.{ext}"), Ok(Format::Png));
         assert_eq!(format("png", None, "o.bin"), Ok(Format::Png));
-        assert_eq!(format("png", Some("webp"), "o.tif"), Ok(Format::Webp));
+        assert_eq!(format("png", Some("webp"), "o.bin"), Ok(Format::Webp));
+        assert!(matches!(format("png", Some("webp"), "o.tif"), Err(NamingError::OtherFormat { .. })));
         assert_eq!(format("png", Some("auto"), "out/"), Ok(Format::Jpeg));
         assert!(format("auto", None, "o.bin").is_err());
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::layers::FOLDER_FILE;
 use crate::settings::{Key, NotAValue};
+use crate::{quoted, shown};
 
 /// Why a recipe cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -34,7 +35,7 @@ pub enum Unreadable {
 #[non_exhaustive]
 pub enum RecipeError {
     /// The file cannot be read.
-    #[error("{path}: the recipe cannot be read: {source}", path = path.display())]
+    #[error("{path}: the recipe cannot be read: {source}", path = shown(path))]
     Read {
         /// The file.
         path: PathBuf,
@@ -42,7 +43,7 @@ pub enum RecipeError {
         source: Unreadable,
     },
     /// The file is no TOML.
-    #[error("{path}:{line}: this is not TOML (`name = value`, text in quotes): {message}", path = path.display())]
+    #[error("{path}:{line}: this is not TOML (`name = value`, text in quotes): {}", quoted(message), path = shown(path))]
     Syntax {
         /// The file.
         path: PathBuf,
@@ -52,7 +53,7 @@ pub enum RecipeError {
         message: String,
     },
     /// A name that is no setting.
-    #[error("{path}:{line}: `{name}` is no setting; {}", instead(*nearest), path = path.display())]
+    #[error("{path}:{line}: `{}` is no setting; {}", quoted(name), instead(*nearest), path = shown(path))]
     Key {
         /// The file.
         path: PathBuf,
@@ -64,7 +65,7 @@ pub enum RecipeError {
         nearest: Option<Key>,
     },
     /// A value of the wrong type.
-    #[error("{path}:{line}: `{name}` cannot be {found}; write {allowed}", path = path.display())]
+    #[error("{path}:{line}: `{}` cannot be {found}; write {allowed}", quoted(name), path = shown(path))]
     Type {
         /// The file.
         path: PathBuf,
@@ -78,7 +79,7 @@ pub enum RecipeError {
         allowed: String,
     },
     /// A value that the key does not have.
-    #[error("{path}:{line}: `{key}`: {wrong}", path = path.display())]
+    #[error("{path}:{line}: `{key}`: {wrong}", path = shown(path))]
     Value {
         /// The file.
         path: PathBuf,
@@ -100,7 +101,7 @@ pub enum RecipeError {
     /// `root` where it means nothing.
     #[error(
         "{path}:{line}: `root` belongs into a {FOLDER_FILE}, where it ends the search in the folders above; leave it \
-         out here", path = path.display()
+         out here", path = shown(path)
     )]
     Root {
         /// The file.
@@ -109,7 +110,7 @@ pub enum RecipeError {
         line: usize,
     },
     /// A profile where a recipe should be.
-    #[error("{path}: is a camera profile, not a recipe", path = path.display())]
+    #[error("{path}: is a camera profile, not a recipe", path = shown(path))]
     Profile {
         /// The file.
         path: PathBuf,

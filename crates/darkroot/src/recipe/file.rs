@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 use super::{Layer, Origin, RecipeError, Unreadable};
+use crate::files;
 use crate::settings::{Key, NotAValue};
 
 /// No recipe is as large as that, in bytes.
@@ -52,7 +53,7 @@ fn is_missing(path: &Path) -> bool {
 
 fn text_of(path: &Path) -> io::Result<String> {
     let mut text = String::new();
-    std::fs::File::open(path)?.take(LARGEST + 1).read_to_string(&mut text)?;
+    files::open(path)?.take(LARGEST + 1).read_to_string(&mut text)?;
     if text.len() as u64 > LARGEST {
         return Err(io::ErrorKind::FileTooLarge.into());
     }
@@ -154,11 +155,13 @@ fn kind(value: &DeValue<'_>) -> &'static str {
 
 /// The text, or for a relative path to a profile the path from the recipe's own place.
 fn beside(key: Key, text: &str, recipe: &Path) -> Result<String, NotAValue> {
-    if !key.is_file(text) {
-        return Ok(text.to_owned());
-    }
     let recipe = std::path::absolute(recipe).unwrap_or_else(|_| recipe.to_owned());
     let path = recipe.parent().unwrap_or(Path::new("")).join(text);
+    // A file beside the recipe may be called as it likes.
+    let lies_there = key.may_be_file(text) && path.is_file();
+    if !key.is_file(text) && !lies_there {
+        return Ok(text.to_owned());
+    }
     match path.to_str() {
         Some(path) => Ok(path.to_owned()),
         None => Err(NotAValue::not_utf8(text)),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::RecipeError;
 use crate::settings::{Key, NotAValue};
+use crate::shown;
 
 /// Where a value comes from, in rising priority.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,7 +47,7 @@ impl Origin {
 impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.path() {
-            Some(path) => write!(f, "{}", path.display()),
+            Some(path) => write!(f, "{}", shown(path)),
             None if *self == Self::Flag => f.write_str("command line"),
             None => f.write_str("default"),
         }

@@ -65,6 +65,11 @@ impl Key {
 
     /// Whether a text names a file, not one of the words that the setting has, too.
     pub fn is_file(self, text: &str) -> bool {
+        self.may_be_file(text) && text::is_file_name(text)
+    }
+
+    /// Whether a text is the name of a file if there is one of that name.
+    pub(crate) fn may_be_file(self, text: &str) -> bool {
         matches!(self.setting().kind, Kind::File(words) if !text.is_empty() && !words.contains(&text))
     }
 
@@ -91,20 +96,18 @@ impl Key {
         Ok(match self.setting().kind {
             // Never `-0`.
             Kind::Number { .. } => (text::number(text)? + 0.0).to_string(),
+            Kind::Words(words) => text::word(words, text).map_or(text, |w| w.word).to_owned(),
             _ => text.to_owned(),
         })
     }
 
     /// The key that a person may have meant by a name that is none.
     pub(crate) fn nearest(name: &str) -> Option<Self> {
-        /// More slips of the finger than this make another word.
-        const MOST_SLIPS: usize = 2;
         let name = name.to_lowercase().replace(['_', ' '], "-");
         if let Some(key) = Self::all().find(|key| key.setting().alias == Some(name.as_str())) {
             return Some(key);
         }
-        let (slips, key) = Self::all().map(|key| (slips(&name, key.name()), key)).min()?;
-        (slips <= MOST_SLIPS).then_some(key)
+        crate::nearest(&name, Self::all().map(Self::name)).and_then(Self::from_name)
     }
 
     /// Every name, for messages.
@@ -133,21 +136,6 @@ const fn same(a: &str, b: &str) -> bool {
         i += 1;
     }
     true
-}
-
-/// Letters to insert, delete or replace between two words (Levenshtein distance).
-fn slips(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ pub use key::Key;
 
 pub mod text;
 pub use text::NotAValue;
+pub(crate) use text::is_file_name;
 
 pub mod spaces;
 pub use spaces::{SPACES, space};
@@ -24,6 +25,8 @@ use darkroot_encode::Format;
 use darkroot_photo::PictureSpace;
 use darkroot_raw::{Decoder, Limits};
 
+use crate::files::Tree;
+
 /// Which profile gives the colours.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum ProfileChoice {
@@ -32,7 +35,7 @@ pub enum ProfileChoice {
     Automatic,
     /// The file's own matrices.
     Matrix,
-    /// This file.
+    /// This file, or the profile in the store for the camera of this name.
     File(PathBuf),
 }
 
@@ -71,8 +74,8 @@ pub struct Settings {
     pub limits: Limits,
     /// Whether existing outputs are replaced.
     pub overwrite: bool,
-    /// Folder for unfinished outputs, on the disk of the outputs; beside each output if none.
-    pub scratch: Option<PathBuf>,
+    /// The folder of outputs, if this output is one of many; nowhere below it are links followed.
+    pub tree: Option<Tree>,
 }
 
 /// Settings that contradict each other. Each message says what to do.

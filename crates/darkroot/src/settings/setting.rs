@@ -84,6 +84,8 @@ pub enum Changes {
 pub struct Word<T> {
     /// As it is written.
     pub word: &'static str,
+    /// As it may be written as well; empty where there is no other form.
+    pub also: &'static str,
     /// What it stands for.
     pub value: T,
     /// What it means; empty where the word says it.

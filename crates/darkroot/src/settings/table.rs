@@ -12,7 +12,12 @@ use super::setting::{Changes, Group, Kind, Setting, Word};
 use super::text::{NotAValue, balance, number, one_of, profile, space};
 
 const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
-    Word { word, value, help }
+    Word { word, also: "", value, help }
+}
+
+/// A word with another form.
+const fn either<T>(word: &'static str, also: &'static str, value: T) -> Word<T> {
+    Word { word, also, value, help: "" }
 }
 
 /// The words alone.
@@ -20,7 +25,7 @@ const fn plain<T, const N: usize>(words: &[Word<T>; N]) -> [Word<()>; N] {
     let mut plain = [word("", (), ""); N];
     let mut i = 0;
     while i < N {
-        plain[i] = word(words[i].word, (), words[i].help);
+        plain[i] = Word { word: words[i].word, also: words[i].also, value: (), help: words[i].help };
         i += 1;
     }
     plain
@@ -30,9 +35,9 @@ pub(super) const AUTO: &str = "auto";
 
 pub(super) const FORMATS: [Word<Option<Format>>; 8] = [
     word(AUTO, None, "By the output's ending, else JPEG, or TIFF for linear light"),
-    word("jpeg", Some(Format::Jpeg), ""),
+    either("jpeg", "jpg", Some(Format::Jpeg)),
     word("png", Some(Format::Png), ""),
-    word("tiff", Some(Format::Tiff), ""),
+    either("tiff", "tif", Some(Format::Tiff)),
     word("webp", Some(Format::Webp), ""),
     word("avif", Some(Format::Avif), ""),
     word("exr", Some(Format::Exr), ""),
@@ -244,7 +249,8 @@ pub const SETTINGS: [Setting; 15] = [
         default: AUTO,
         group: Group::Picture,
         placeholder: "FILE",
-        help: "Colour profile: a file, `auto` (your folder, then built in, then the file's matrices) or `matrix`",
+        help: "Colour profile: a file, the name of a camera with a profile (\"Nikon D700\"), `auto` (your folder, then \
+               built in, then the file's matrices) or `matrix`",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.profile, profile(text)),
     },

@@ -10,7 +10,7 @@ use super::table::{AUTO, DECODERS, SWITCH};
 
 /// A text that is no value. The message says what is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` is no {noun}: use {allowed}")]
+#[error("`{}` is no {noun}: use {allowed}", crate::quoted(text))]
 pub struct NotAValue {
     text: String,
     noun: &'static str,
@@ -48,7 +48,9 @@ impl Setting {
             Kind::Number { least, most, whole: true, .. } => format!("a whole number in {least}..={most}"),
             Kind::Number { least, most, unit, .. } => format!("a number of {unit} from {least} to {most}"),
             Kind::Text { form, .. } => form.to_owned(),
-            Kind::File(words) => format!("a file, {}", words.join(" or ")),
+            Kind::File(words) => {
+                format!("a file, the name of a camera with a profile, {}", words.join(" or "))
+            }
         }
     }
 
@@ -83,9 +85,22 @@ fn one_of_words<T>(words: &[Word<T>]) -> String {
     }
 }
 
+/// The word of a list that a text is, by either of its forms.
+pub(super) fn word<'w, T>(list: &'w [Word<T>], text: &str) -> Option<&'w Word<T>> {
+    list.iter().find(|w| w.word == text || (!w.also.is_empty() && w.also == text))
+}
+
+/// Whether a text names a file, not a camera: it says in which folder, has the ending of a profile, or is there.
+pub(crate) fn is_file_name(text: &str) -> bool {
+    let path = std::path::Path::new(text);
+    let ending =
+        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml") || e.eq_ignore_ascii_case("dcp"));
+    !text.is_empty() && (ending || text.contains(std::path::is_separator) || path.is_file())
+}
+
 /// What a word of a list stands for.
 pub(super) fn one_of<T: Copy>(list: &[Word<T>], text: &str) -> Result<T, NotAValue> {
-    let found = list.iter().find(|w| w.word == text).map(|w| w.value);
+    let found = word(list, text).map(|w| w.value);
     found.ok_or_else(|| NotAValue::plain(text, "value", one_of_words(list)))
 }
 

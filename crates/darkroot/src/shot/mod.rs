@@ -2,6 +2,7 @@
 //!
 //! Files are read here; the science is that of [`darkroot_calibrate::shot`].
 
+mod light;
 mod rendered;
 mod view;
 
@@ -14,6 +15,7 @@ use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, Slope};
 
 pub use darkroot_calibrate::gates::near;
 pub use darkroot_calibrate::{Finding, Gate, Verdict};
+pub(crate) use light::light_of;
 pub use view::View;
 pub(crate) use view::common_name;
 
@@ -74,6 +76,8 @@ pub struct Shot {
     pub notes: Vec<String>,
     /// Exposure time in seconds, where the camera tells.
     pub exposure_seconds: Option<f64>,
+    /// Day of the shot, YYYY-MM-DD, where the camera tells.
+    pub date: Option<String>,
 }
 
 /// Opens a shot, finds and measures the chart, and checks whether it is good enough.
@@ -160,6 +164,7 @@ fn measured(
         gates,
         notes,
         exposure_seconds: view.exposure_seconds,
+        date: view.date.clone(),
     })
 }
 

@@ -6,8 +6,8 @@ use std::path::Path;
 use darkroot_colour::RgbSpace;
 use darkroot_photo::{Layout, Mosaic, Size};
 
-use crate::Error;
 use crate::fault::ChartError;
+use crate::{Error, files};
 
 /// Most pixels of a rendered picture.
 const MOST_PIXELS: u64 = 200_000_000;
@@ -20,8 +20,8 @@ pub(super) fn is_rendered(path: &Path) -> bool {
 
 /// Reads a picture as linear RGB, 1 = white.
 pub(super) fn read(path: &Path) -> Result<Mosaic<f32>, Error> {
-    let mut reader = image::ImageReader::open(path)
-        .and_then(image::ImageReader::with_guessed_format)
+    let mut reader = image::ImageReader::new(std::io::Cursor::new(files::read(path)?))
+        .with_guessed_format()
         .map_err(|e| Error::read(path, e))?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MOST_PIXELS * 8);

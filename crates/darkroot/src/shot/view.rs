@@ -32,6 +32,8 @@ pub struct View {
     pub as_shot: Option<[f64; 3]>,
     /// Exposure time, where the camera tells.
     pub exposure_seconds: Option<f64>,
+    /// Day of the shot, YYYY-MM-DD, where the camera tells.
+    pub date: Option<String>,
 }
 
 impl View {
@@ -66,6 +68,7 @@ impl View {
             crop,
             orientation: capture.orientation,
             exposure_seconds: seconds.filter(|s| *s > 0.0),
+            date: Some(crate::naming::header_of(capture).1).filter(|date| !date.is_empty()),
         })
     }
 
@@ -94,6 +97,7 @@ impl View {
             matrix: None,
             as_shot: None,
             exposure_seconds: None,
+            date: None,
         })
     }
 

@@ -115,10 +115,12 @@ struct Head {
 /// # Errors
 /// Wrong syntax, unknown fields, another version, missing or extra terms, values that are not finite.
 pub fn parse(text: &str) -> Result<Profile, Error> {
-    let syntax = |e: toml::de::Error| Error::Syntax { detail: e.to_string().trim_end().replace('\n', " ") };
+    let syntax = |e: toml::de::Error| syntax(text, &e);
     let head: Head = toml::from_str(text).map_err(syntax)?;
     if head.format != FORMAT {
-        return Err(Error::Syntax { detail: format!("its format is `{}`, not `{FORMAT}`", head.format) });
+        return Err(Error::Syntax {
+            detail: format!("its format is `{}`, not `{FORMAT}`", short(&head.format)),
+        });
     }
     if head.version != VERSION {
         return Err(Error::Version { found: head.version });
@@ -132,6 +134,25 @@ pub fn parse(text: &str) -> Result<Profile, Error> {
     let camera =
         ProfileCamera { make: file.camera.make, model: file.camera.model, aliases: file.camera.aliases };
     Profile::new(camera, calibrations, origin(file.origin)).ok_or(Error::Empty)
+}
+
+/// What the reader says, with the line that it is about.
+fn syntax(text: &str, error: &toml::de::Error) -> Error {
+    let before = &text.as_bytes()[..error.span().map_or(0, |s| s.start).min(text.len())];
+    let number = before.iter().filter(|b| **b == b'\n').count();
+    let line = short(text.lines().nth(number).unwrap_or_default().trim());
+    let message = short(&error.message().trim().replace('\n', ", "));
+    Error::Syntax { detail: format!("line {}, `{line}`: {message}", number + 1) }
+}
+
+/// As much of a text as tells which one it is.
+fn short(text: &str) -> String {
+    /// In characters.
+    const MOST: usize = 200;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
 }
 
 fn origin(table: OriginTable) -> Origin {

@@ -82,3 +82,19 @@ fn without_a_chart_it_says_so_and_goes_on() {
     assert_eq!(run.code, 0, "{}", run.err);
     assert!(run.err.contains("no colour chart was found"), "{}", run.err);
 }
+
+#[test]
+fn the_light_of_a_session_is_the_one_that_its_chart_shows() {
+    let desk = Desk::new();
+    let chart = Scene::chart(SIZE, CORNERS, &darkroot_simulate::chart::reflectances(), 6, 0.15);
+    desk.put("in/chart.dng", dng_of(&chart, "A"));
+    let free = desk.batch(&["--chart-shot", "auto", "--json"]);
+    assert_eq!((free.code, summary(&free)), (0, [1, 0, 0, 0]), "{}", free.err);
+    let session = below(&desk.path("out/.darkroot/session"));
+    let shown = desk.run(&["profile", "show", &format!("out/.darkroot/session/{}", session[0])]).out;
+    let kelvin = shown.lines().find_map(|l| l.split_once(" K: xy")).unwrap().0.trim().parse::<f64>().unwrap();
+    assert!((1e6 / kelvin - 1e6 / 2856.0).abs() < 40.0, "{shown}");
+    // A light that was named and is another is not taken on trust.
+    let wrong = desk.batch(&["--chart-shot", "auto", "--light", "D50", "--json"]);
+    assert!(wrong.err.contains("mired from D50") && wrong.err.contains("colours nothing"), "{}", wrong.err);
+}

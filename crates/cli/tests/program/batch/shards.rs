@@ -72,3 +72,29 @@ fn gnu_parallel_runs_the_shards_of_the_guide() {
     assert_eq!(desk.outputs().len(), 24);
     assert!(desk.run(&["batch", "status", "out"]).out.contains("together: 24 done"));
 }
+
+#[test]
+fn a_whole_run_beside_a_shard_waits_and_fails_nothing() {
+    use std::process::Stdio;
+    let desk = desk();
+    let mut shard = desk.command(&["batch", "in", "-o", "out", "--shard", "1/2", "--jobs", "1", "--json"]);
+    let mut shard = shard.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for("the shard", || desk.path("out/.darkroot/journal-1-of-2.jsonl").exists().then_some(()));
+    let whole = desk.batch(&["--json"]);
+    let third = desk.batch(&["--json", "--shard", "1/3"]);
+    let other = desk.batch(&["--json", "--shard", "2/2"]);
+    let ended = shard.try_wait().unwrap().is_some();
+    let shard = Run::of(&shard.wait_with_output().unwrap(), &["shard"]);
+    assert_eq!((shard.code, summary(&shard)[2]), (0, 0), "{}", shard.err);
+    assert_eq!((other.code, summary(&other)[2]), (0, 0), "{}", other.err);
+    for beside in [whole, third] {
+        if ended && beside.code == 0 {
+            eprintln!("skipped: the shard was at its end");
+            continue;
+        }
+        assert!(beside.code == 2 && beside.err.contains("one of 2 parts"), "{}", beside.err);
+        assert!(beside.err.contains("--shard I/N") && beside.out.is_empty(), "{}", beside.err);
+    }
+    let run = desk.batch(&["--json"]);
+    assert_eq!((run.code, summary(&run)), (0, [0, 24, 0, 0]), "{}", run.err);
+}

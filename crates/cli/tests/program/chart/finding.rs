@@ -49,7 +49,7 @@ fn no_chart_is_invented_and_a_mirrored_one_is_refused() {
     let mirrored = expose(&mirrored, &Camera::simulated_one(), &daylight());
     desk.put("mirrored.dng", dng::write(&mirrored, dng::Storage::Uncompressed));
     let run = desk.run(&["chart", "plain.dng", "mirrored.dng"]);
-    assert_eq!(run.code, 0, "{}", run.err);
+    assert_eq!(run.code, 1, "{}", run.err);
     let lines: Vec<&str> = run.out.lines().collect();
     assert!(lines[0].contains("no chart") && lines[1].contains("no chart"), "{lines:?}");
     assert!(lines[1].contains("mirrored"), "{lines:?}");
