@@ -42,6 +42,8 @@ pub use weights::TristimulusWeights;
 
 pub mod statistics;
 
+pub mod decomposition;
+
 mod sprague;
 mod tables;
 

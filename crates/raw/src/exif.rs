@@ -1,10 +1,10 @@
 //! What the camera wrote about the shot: standard Exif fields of any container.
 
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
-use exif::{Context, In, Reader, Value as ExifValue};
 use flashraw::{PreviewEncoding, RawMetadata};
 
 use crate::screen::Container;
+use crate::tiff::{Directories, EXIF_IFD, Entry, GPS_IFD};
 
 /// Fields of the primary directory that still hold for the developed picture.
 const IMAGE_TAGS: [u16; 6] = [0x010e, tag::MAKE, tag::MODEL, tag::DATE_TIME, tag::ARTIST, tag::COPYRIGHT];
@@ -19,34 +19,47 @@ const EXIF_TAGS: [u16; 53] = [
     0xa461,
 ];
 
+/// Exif 2.32 defines no tags beyond this one in the directory of the position.
+const LAST_GPS_TAG: u16 = 0x1f;
+
 /// No real text field is longer.
 const MAX_TEXT: usize = 4096;
-/// No field that is carried over is longer.
+/// No field that is carried over has more values.
 const MAX_VALUES: usize = 1024;
+/// Bytes of the largest field that is carried over: the longest list of fractions.
+const MAX_LENGTH: usize = 8 * MAX_VALUES;
 
 /// Reads the standard fields of the file itself, or of its embedded JPEG where the container is not TIFF.
+///
+/// However many entries there are and whatever they claim, what is kept of them is bounded: each wanted field once, of
+/// [`MAX_LENGTH`] bytes at most.
 pub(crate) fn read(bytes: &[u8], container: &Container<'_>, meta: &RawMetadata) -> Metadata {
-    let block = if container.tiff.is_some() { Some(bytes) } else { embedded_jpeg(bytes, meta) };
-    let Some(block) = block else { return Metadata::default() };
-    let mut reader = Reader::new();
-    reader.continue_on_error(true);
-    let parsed = reader
-        .read_from_container(&mut std::io::Cursor::new(block))
-        .or_else(|e| e.distill_partial_result(|_| ()));
+    if let Some(tiff) = &container.tiff {
+        return fields(tiff);
+    }
+    let block = embedded_jpeg(bytes, meta).and_then(exif_of_jpeg);
     // A file with no readable Exif develops all the same; its fields are then few.
-    let Ok(parsed) = parsed else { return Metadata::default() };
+    let tiff = block.and_then(|block| Directories::walk(block).ok().flatten());
+    tiff.map_or_else(Metadata::default, |tiff| fields(&tiff))
+}
+
+/// The wanted fields of the first directory and of those below it.
+fn fields(tiff: &Directories<'_>) -> Metadata {
     let mut metadata = Metadata::default();
-    for field in parsed.fields().filter(|f| f.ifd_num == In::PRIMARY) {
-        let number = field.tag.number();
-        let directory = match field.tag.context() {
-            Context::Tiff if IMAGE_TAGS.contains(&number) => Directory::Image,
-            Context::Exif if EXIF_TAGS.contains(&number) => Directory::Exif,
-            Context::Gps => Directory::Gps,
-            _ => continue,
-        };
-        if let Some(value) = value(&field.value) {
-            metadata.set(directory, number, value);
+    let Some(image) = tiff.all.first() else { return metadata };
+    let mut take = |entries: &[Entry], directory, wanted: &dyn Fn(u16) -> bool| {
+        for entry in entries.iter().filter(|e| wanted(e.tag)) {
+            if let Some(value) = value(tiff, entry) {
+                metadata.set(directory, entry.tag, value);
+            }
         }
+    };
+    take(&image.entries, Directory::Image, &|tag| IMAGE_TAGS.contains(&tag));
+    if let Some(exif) = tiff.below(image, EXIF_IFD) {
+        take(&exif.entries, Directory::Exif, &|tag| EXIF_TAGS.contains(&tag));
+    }
+    if let Some(gps) = tiff.below(image, GPS_IFD) {
+        take(&gps.entries, Directory::Gps, &|tag| tag <= LAST_GPS_TAG);
     }
     metadata
 }
@@ -87,30 +100,44 @@ fn embedded_jpeg<'a>(bytes: &'a [u8], meta: &RawMetadata) -> Option<&'a [u8]> {
     bytes.get(start..start.checked_add(usize::try_from(largest.length).ok()?)?)
 }
 
-fn value(value: &ExifValue) -> Option<Value> {
-    let value = match value {
-        ExifValue::Ascii(lines) => {
-            let lines = lines.iter().map(|l| String::from_utf8_lossy(l).trim_matches(['\0', ' ']).to_owned());
-            let text = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
-            return (!text.is_empty() && text.len() <= MAX_TEXT).then_some(Value::Text(text));
+/// The Exif block of a JPEG: the first APP1 segment that says so (Exif 2.32, 4.7.2).
+fn exif_of_jpeg(jpeg: &[u8]) -> Option<&[u8]> {
+    let mut rest = jpeg.strip_prefix(&[0xff, 0xd8])?;
+    while let [0xff, marker, high, low, ..] = *rest {
+        let (segment, after) =
+            rest.get(2..)?.split_at_checked(usize::from(u16::from_be_bytes([high, low])))?;
+        match marker {
+            0xe1 if segment.get(2..8) == Some(b"Exif\0\0") => return segment.get(8..),
+            // The scan: headers are over.
+            0xda => return None,
+            _ => rest = after,
         }
-        ExifValue::Byte(v) => Value::Bytes(v.clone()),
-        ExifValue::Undefined(v, _) => Value::Undefined(v.clone()),
-        ExifValue::Short(v) => Value::Shorts(v.clone()),
-        ExifValue::Long(v) => Value::Longs(v.clone()),
-        ExifValue::Rational(v) => Value::Rationals(v.iter().map(|r| (r.num, r.denom)).collect()),
-        ExifValue::SRational(v) => Value::SignedRationals(v.iter().map(|r| (r.num, r.denom)).collect()),
+    }
+    None
+}
+
+/// The value of an entry; `None` for types that no wanted field has, and for values larger than any real one.
+fn value(tiff: &Directories<'_>, entry: &Entry) -> Option<Value> {
+    let bytes = tiff.value(entry, MAX_LENGTH).filter(|bytes| !bytes.is_empty())?;
+    let pairs = || tiff.longs(bytes).as_chunks().0.iter().map(|&[n, d]| (n, d)).collect::<Vec<(u32, u32)>>();
+    let value = match entry.kind {
+        2 => return text(bytes),
+        1 => Value::Bytes(bytes.to_vec()),
+        7 => Value::Undefined(bytes.to_vec()),
+        3 => Value::Shorts(tiff.shorts(bytes)),
+        4 => Value::Longs(tiff.longs(bytes)),
+        5 => Value::Rationals(pairs()),
+        10 => Value::SignedRationals(pairs().into_iter().map(|(n, d)| (n as i32, d as i32)).collect()),
         _ => return None,
     };
-    let count = match &value {
-        Value::Bytes(v) | Value::Undefined(v) => v.len(),
-        Value::Shorts(v) => v.len(),
-        Value::Longs(v) => v.len(),
-        Value::Rationals(v) => v.len(),
-        Value::SignedRationals(v) => v.len(),
-        Value::Text(_) => 1,
-    };
-    (1..=MAX_VALUES).contains(&count).then_some(value)
+    (entry.count <= MAX_VALUES as u64).then_some(value)
+}
+
+/// The lines of a text field, which zeros divide.
+fn text(bytes: &[u8]) -> Option<Value> {
+    let lines = bytes.split(|&b| b == 0).map(|l| String::from_utf8_lossy(l).trim_matches(' ').to_owned());
+    let text = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
+    (!text.is_empty() && text.len() <= MAX_TEXT).then_some(Value::Text(text))
 }
 
 /// A positive number as a fraction: 1/n where it is one, else in thousandths.
