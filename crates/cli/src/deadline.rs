@@ -18,6 +18,11 @@ pub(crate) struct Deadline {
 }
 
 impl Deadline {
+    /// For so many files together.
+    pub(crate) fn times(self, files: usize) -> Self {
+        Self { timeout: self.timeout.saturating_mul(u32::try_from(files).unwrap_or(u32::MAX)) }
+    }
+
     /// Does the work on a file. A thread cannot be ended from outside: when the time is over, unfinished outputs are
     /// removed, `late` may say what it says of files that fail, and the program ends. `after` is the number of files
     /// that are then left.

@@ -85,7 +85,8 @@ impl Verify {
         let profile = store().choose(profile)?.profile;
         let request =
             self.shot.request(std::slice::from_ref(file), std::slice::from_ref(&self.light), None, "")?;
-        let found = match verify(&profile, &request, &Settings::default()) {
+        let judge = || verify(&profile, &request, &Settings::default());
+        let found = match self.shot.deadline.over(file, 0, |_| (), judge) {
             Ok(found) => found,
             Err(fault) => {
                 crate::say(format_args!("error: {}", crate::hint::words(&fault)));

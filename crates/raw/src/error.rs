@@ -80,8 +80,8 @@ pub enum Damage {
     /// Strips or tiles that share bytes.
     #[error("its strips or tiles overlap")]
     OverlappingPieces,
-    /// A JPEG inside it that is much larger than its place in the picture.
-    #[error("a JPEG in it claims more samples than its place in the picture has")]
+    /// A strip or tile (JPEG, JPEG XL) that is much larger than its place in the picture.
+    #[error("one of its strips or tiles claims more samples than its place in the picture has")]
     LargeFrame,
     /// More samples than its bytes can hold.
     #[error("its {bytes} bytes cannot hold the {samples} samples that it claims")]
@@ -153,8 +153,8 @@ pub enum TooLarge {
     /// The frame.
     #[error("{} x {} pixels", .0.width, .0.height)]
     Frame(Size),
-    /// A JPEG inside it.
-    #[error("a JPEG of {0} samples")]
+    /// A strip or tile.
+    #[error("a strip or tile of {0} samples")]
     Samples(u64),
     /// What the decoder says.
     #[error("{message}")]

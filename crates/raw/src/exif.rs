@@ -162,6 +162,59 @@ fn exif_date(iso: &str) -> Option<String> {
 mod tests {
     use super::*;
 
+    /// A big-endian TIFF whose first directory points to an Exif directory with these entries of values at the end.
+    fn tiff(entries: &[(u16, u16, u32)], values: &[u8]) -> Vec<u8> {
+        let mut bytes = b"MM\0\x2a\0\0\0\x08\0\x01\x87\x69\0\x04\0\0\0\x01\0\0\0\x1a\0\0\0\0".to_vec();
+        let values_at = (bytes.len() + 2 + 12 * entries.len() + 4) as u32;
+        bytes.extend((entries.len() as u16).to_be_bytes());
+        for (tag, kind, count) in entries {
+            bytes.extend([tag.to_be_bytes(), kind.to_be_bytes()].concat());
+            bytes.extend([count.to_be_bytes(), values_at.to_be_bytes()].concat());
+        }
+        bytes.extend([0; 4]);
+        bytes.extend(values);
+        bytes
+    }
+
+    fn read_fields(bytes: &[u8]) -> Metadata {
+        fields(&Directories::walk(bytes).unwrap().unwrap())
+    }
+
+    #[test]
+    fn values_of_every_type_are_read_in_the_file_s_byte_order() {
+        let values = [0, 0, 0, 7, 0xff, 0xff, 0xff, 0xfe, 0, 0];
+        let wanted = [(0x829a, 5, 1), (0x9204, 10, 1), (0x8827, 3, 4), (0x8830, 4, 2), (0x9286, 7, 6)];
+        let metadata = read_fields(&tiff(&wanted, &values));
+        let of = |tag| metadata.get(Directory::Exif, tag).unwrap().clone();
+        assert_eq!(of(0x829a), Value::Rationals(vec![(7, 0xffff_fffe)]));
+        assert_eq!(of(0x9204), Value::SignedRationals(vec![(7, -2)]));
+        assert_eq!(of(0x8827), Value::Shorts(vec![0, 7, 0xffff, 0xfffe]));
+        assert_eq!(of(0x8830), Value::Longs(vec![7, 0xffff_fffe]));
+        assert_eq!(of(0x9286), Value::Undefined(values[..6].to_vec()));
+        let lines = read_fields(&tiff(&[(0xa434, 2, 12)], b"50 mm\0 f/2 \0"));
+        assert_eq!(lines.text(Directory::Exif, 0xa434), Some("50 mm; f/2"));
+    }
+
+    #[test]
+    fn values_larger_than_any_real_one_and_unknown_types_are_left_out() {
+        let block = vec![b'a'; 20_000];
+        let large =
+            [(0x8830, 4, 1025), (0x9003, 2, 4097), (0x9286, 7, 1025), (0x9291, 13, 9), (0x9292, 2, u32::MAX)];
+        assert_eq!(read_fields(&tiff(&large, &block)), Metadata::default());
+        let largest = [(0x829a, 5, 1024), (0x9003, 2, 4096), (0x9286, 7, 1024)];
+        assert_eq!(read_fields(&tiff(&largest, &block)).fields().len(), 3);
+    }
+
+    #[test]
+    fn the_block_of_a_jpeg_is_its_first_exif_segment() {
+        let jpeg = b"\xff\xd8\xff\xe0\0\x04JF\xff\xe1\0\x05XMP\xff\xe1\0\x0cExif\0\0MM\0\x2a\xff\xda\0\x02";
+        assert_eq!(exif_of_jpeg(jpeg), Some(&b"MM\0\x2a"[..]));
+        for length in 0..jpeg.len() - 4 {
+            assert_eq!(exif_of_jpeg(&jpeg[..length]), None, "{length}");
+        }
+        assert_eq!(exif_of_jpeg(b"\xff\xd8\xff\xda\0\x02\xff\xe1\0\x0aExif\0\0MM"), None);
+    }
+
     #[test]
     fn exposure_times_become_the_fractions_that_cameras_show() {
         assert_eq!(fraction(0.005), Some(Value::Rationals(vec![(1, 200)])));

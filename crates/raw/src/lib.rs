@@ -1,7 +1,7 @@
 //! Bytes of a raw file to a [`Capture`]: the only part of Darkroot that meets hostile input.
 //!
 //! [`decode`] screens the container first (`screen.rs`), so that no decoder sees a file whose directories loop
-//! or whose sizes are beyond the [`Limits`], whose strips overlap or whose JPEGs are larger than their place
+//! or whose sizes are beyond the [`Limits`], whose strips overlap or are larger than their place
 //! (`pieces.rs`). Then one of two decoders runs, behind a guard that turns a panic
 //! into an error: flashraw (default) or rawloader (older makers, cross-check).
 //!
@@ -23,6 +23,7 @@ pub mod samples;
 pub use samples::samples_hash;
 
 mod jpeg_frame;
+mod jxl_frame;
 mod pieces;
 mod screen;
 mod tiff;

@@ -1,10 +1,10 @@
 //! Strips and tiles: whether they can be what their directory says.
 //!
-//! Decoders believe what a piece says of itself. So a piece that is a JPEG must not be much larger than its place in
+//! Decoders believe what a piece says of itself. So a piece that is a JPEG or a JPEG XL must not be much larger than its place in
 //! the picture, and no byte of a file may belong to two pieces: a hundred kilobytes would else become gigabytes.
 
 use crate::tiff::{Directories, Directory};
-use crate::{Damage, Error, Limits, TooLarge, jpeg_frame};
+use crate::{Damage, Error, Limits, TooLarge, jpeg_frame, jxl_frame};
 
 mod tag {
     pub(super) const NEW_SUBFILE_TYPE: u16 = 0x00fe;
@@ -28,7 +28,7 @@ const SMALL_FRAME: u64 = 1 << 16;
 /// Samples that a byte of JPEG can hold where no size is stated: even a grey sky takes some bits for 64 pixels.
 const SAMPLES_PER_BYTE: u64 = 256;
 
-/// Refuses pictures in strips or tiles that overlap, or that hold JPEGs larger than their place. Reduced pictures are
+/// Refuses pictures in strips or tiles that overlap, or whose pieces are larger than their place. Reduced pictures are
 /// not looked at: nobody decodes them here.
 pub(crate) fn check(tiff: &Directories<'_>, limits: &Limits) -> Result<(), Error> {
     for directory in &tiff.all {
@@ -84,9 +84,10 @@ fn place(tiff: &Directories<'_>, directory: &Directory) -> Option<u64> {
     Some(width.saturating_mul(height).saturating_mul(planes))
 }
 
-/// A piece that is a JPEG holds no more than its place has room for.
+/// A piece that is a JPEG or a JPEG XL holds no more than its place has room for.
 fn frame_fits(piece: &[u8], place: Option<u64>, limits: &Limits) -> Result<(), Error> {
-    let Some(samples) = jpeg_frame::most_samples(piece) else { return Ok(()) };
+    let stated = jpeg_frame::most_samples(piece).or_else(|| jxl_frame::most_samples(piece));
+    let Some(samples) = stated else { return Ok(()) };
     let room = match place {
         Some(place) => place.saturating_mul(FRAME_SLACK),
         None => SAMPLES_PER_BYTE.saturating_mul(piece.len() as u64),

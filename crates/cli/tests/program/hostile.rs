@@ -181,7 +181,25 @@ fn a_jpeg_that_is_larger_than_its_tile_is_refused() {
         .entry(0x0143, LONG, 1, 512)
         .entry(0x0144, LONG, 1, at)
         .entry(0x0145, LONG, 1, jpeg.len() as u32);
-    refused_at_once(&forged.finish(), "a JPEG in it claims more samples than its place in the picture has");
+    refused_at_once(
+        &forged.finish(),
+        "one of its strips or tiles claims more samples than its place in the picture has",
+    );
+}
+
+#[test]
+fn a_jpeg_xl_that_is_larger_than_its_tile_is_refused() {
+    let mut forged = Forged::dng(512, 512);
+    // 2^30 pixels high and as wide.
+    let jxl = [b"\xff\x0a\xfe\xff\xff\xff\x03", &[0; 100_000][..]].concat();
+    let at = forged.put(&jxl);
+    forged
+        .entry(0x0103, SHORT, 1, 52546)
+        .entry(0x0142, LONG, 1, 512)
+        .entry(0x0143, LONG, 1, 512)
+        .entry(0x0144, LONG, 1, at)
+        .entry(0x0145, LONG, 1, jxl.len() as u32);
+    refused_at_once(&forged.finish(), "one of its strips or tiles claims more samples");
 }
 
 #[test]

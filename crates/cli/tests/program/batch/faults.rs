@@ -187,10 +187,15 @@ fn a_foreign_picture_that_comes_after_the_plan_is_neither_replaced_nor_claimed()
     for name in ["a", "b", "c"] {
         desk.put(&format!("in/{name}.dng"), small_dng());
     }
-    // When the first file is handed out, a picture by another hand appears at the place of the last.
+    // When the first file is handed out, a picture by another hand appears at the place of the last, whose worker would
+    // die before it could see that.
     let place = desk.path("out/c.jpg");
     let script = format!(
-        "while read -r line; do echo foreign >'{}'; echo \"$line\"; done | \"$1\" worker",
+        r#"while read -r line; do
+            echo foreign >'{}'
+            case $line in *c.dng*) kill -KILL 0;; esac
+            printf '%s\n' "$line"
+        done | "$1" worker"#,
         place.display()
     );
     let outcomes = with_worker_of(&desk, &script, 1);
@@ -200,6 +205,31 @@ fn a_foreign_picture_that_comes_after_the_plan_is_neither_replaced_nor_claimed()
     let run = desk.batch(&["--json"]);
     assert_eq!((run.code, summary(&run)), (1, [0, 2, 1, 0]), "{}", run.err);
     assert_eq!(desk.read("out/c.jpg"), b"foreign\n");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_worker_has_little_memory_before_it_reads_the_head_of_a_file() {
+    let desk = Desk::new();
+    desk.put("in/a.dng", small_dng());
+    // When it says what a file needs it has read the head, and was not yet told to go on.
+    let script = format!(
+        r#"cd '{}'
+        sh -c 'echo $$ >pid; exec "$1" worker' sh "$1" | while read -r line; do
+            case $line in *'"needs"'*) grep 'Max data size' "/proc/$(cat pid)/limits" >>limits;; esac
+            printf '%s\n' "$line"
+        done"#,
+        desk.folder.path().display()
+    );
+    let outcomes = with_worker_of(&desk, &script, 1);
+    assert!(matches!(&outcomes[..], [(_, Ok(()))]), "{outcomes:?}");
+    let limits = String::from_utf8(desk.read("limits")).unwrap();
+    let most = (512 << 20) + 4 * small_dng().len() as u64;
+    for line in limits.lines() {
+        let limit: u64 = line.split_whitespace().nth(3).unwrap().parse().unwrap_or(u64::MAX);
+        assert!(limit <= most, "{line}");
+    }
+    assert!(!limits.is_empty());
 }
 
 #[cfg(unix)]
