@@ -1,6 +1,6 @@
 //! An output folder with its journal and its workers: plans, sessions, runs.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -156,6 +156,7 @@ impl Batch {
             history: &mut self.history,
             summary: Summary::default(),
             tries: HashMap::new(),
+            in_doubt: HashSet::new(),
             inputs_may_vanish: self.inputs_may_vanish,
             on_event,
             wording: self.crew.wording().clone(),
@@ -166,7 +167,7 @@ impl Batch {
                 State::Done(_) => run.summary.skipped += 1,
                 State::Conflict(conflict) => run.conflict(item, conflict),
                 State::Todo(why) => {
-                    let task = develop_task(item, *why, &self.out, &self.scratch, self.thumbnails);
+                    let task = develop_task(item, *why, plan, &self.out, &self.scratch, self.thumbnails);
                     let size = item.source.size;
                     queue.push_back(Work::new(id, Task::Develop(task), size));
                 }
@@ -214,13 +215,19 @@ impl Batch {
     }
 }
 
-fn develop_task(item: &Item, why: Why, out: &Path, scratch: &Path, thumbnail: bool) -> Develop {
-    let output = item.place(out);
+fn develop_task(
+    item: &Item,
+    why: Why,
+    plan: &BatchPlan,
+    out: &Path,
+    scratch: &Path,
+    thumbnail: bool,
+) -> Develop {
     // Whatever stands at the place of a new output stays; the plan knows the others for ours.
-    let overwrite = why != Why::New || output.symlink_metadata().is_ok();
+    let overwrite = why != Why::New || plan.overwrite;
     Develop {
         input: item.source.path.clone(),
-        output,
+        output: item.place(out),
         texts: item.prepared.texts.clone(),
         format: item.prepared.format.extension().to_owned(),
         session: Vec::clone(&item.session),

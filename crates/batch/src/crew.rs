@@ -34,7 +34,7 @@ pub(crate) struct Work {
     /// Not before this time.
     after: Option<Instant>,
     /// Whether a worker died over it already.
-    second_try: bool,
+    pub(crate) second_try: bool,
 }
 
 impl Work {
@@ -56,6 +56,8 @@ pub(crate) enum Next {
     GoOn,
     /// The same task again after a while.
     Again(Duration),
+    /// Another task: this one is not to be begun.
+    Leave,
     /// No more new tasks.
     Finish,
 }
@@ -167,10 +169,14 @@ impl Crew {
                 return Ok(());
             }
             let Some(work) = round.queue.remove(at) else { return Ok(()) };
-            if matches!((round.caller)(&work, Progress::Begins), Next::Finish) {
-                round.finishing = true;
-                round.queue.push_front(work);
-                return Ok(());
+            match (round.caller)(&work, Progress::Begins) {
+                Next::Finish => {
+                    round.finishing = true;
+                    round.queue.push_front(work);
+                    return Ok(());
+                }
+                Next::Leave => continue,
+                Next::GoOn | Next::Again(_) => {}
             }
             self.budget.reading(slot, work.size);
             self.start_worker(slot)?;
@@ -222,7 +228,8 @@ impl Crew {
                 // The file may be innocent (memory ran out, somebody ended the process): it gets a second chance.
                 let again = |(work, _): &mut (Work, Instant)| !work.second_try && !round.finishing;
                 if let Some((work, _)) = self.slots[slot].work.take_if(again) {
-                    round.queue.push_front(Work { second_try: true, ..work });
+                    let task = work.task.once_more();
+                    round.queue.push_front(Work { second_try: true, task, ..work });
                     self.free(slot);
                 } else {
                     self.end_task(slot, Err(failure), round);
@@ -264,7 +271,7 @@ impl Crew {
     fn tell(&mut self, slot: usize, result: Result<Answer, Failure>, round: &mut Round<'_>) {
         let Some((work, _)) = &self.slots[slot].work else { return };
         match (round.caller)(work, Progress::Ended(result)) {
-            Next::GoOn => {}
+            Next::GoOn | Next::Leave => {}
             Next::Finish => round.finishing = true,
             Next::Again(pause) => {
                 round.queue.push_back(Work { after: Some(Instant::now() + pause), ..work.clone() });

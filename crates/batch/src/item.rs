@@ -153,6 +153,8 @@ pub struct BatchPlan {
     pub out: PathBuf,
     /// Names of outputs.
     pub template: String,
+    /// Whether files that no journal knows may be replaced.
+    pub overwrite: bool,
     /// All files of the shard.
     pub items: Vec<Item>,
     /// What could not be read while looking for inputs.

@@ -10,6 +10,11 @@ pub(crate) const WORKER: u64 = 40 << 20;
 /// Tiles of one more thread.
 const THREAD: u64 = 12 << 20;
 
+/// Bytes for reading a file and what stands at its head.
+pub(crate) fn head(file: u64) -> u64 {
+    WORKER + 2 * file
+}
+
 /// Bytes that a worker holds at most while it develops a file of so many bytes and samples. Measured for every format with
 /// the operating system's count (a test of the program holds it to that): the file and its samples, then the samples and the
 /// picture, then the picture and what its encoder keeps.

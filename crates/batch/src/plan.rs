@@ -62,6 +62,7 @@ pub(crate) fn plan(
         })
         .collect();
     let mut plan = BatchPlan {
+        overwrite: options.overwrite,
         out: options.out.clone(),
         template: options.template.clone(),
         items,

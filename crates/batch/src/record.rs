@@ -48,7 +48,8 @@ pub struct Failed {
     pub output: String,
     /// One sentence: what is wrong and what to do.
     pub error: String,
-    /// Whether its worker died, so that an output may stand there all the same.
+    /// Whether its worker died, now or in an earlier attempt that nothing was heard of: an output of ours may stand there
+    /// all the same.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub died: bool,
     /// Version of Darkroot.

@@ -1,7 +1,7 @@
 //! One run of a plan: events as files come and go, the journal, and what stops it all.
 
-use std::collections::HashMap;
-use std::path::Path;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use darkroot::VERSION;
@@ -16,7 +16,7 @@ use super::journal::{self, Journal, JournalError};
 use super::names;
 use super::outcome::{Event, StopReason, Summary};
 use super::record::{Done, Failed, Record};
-use super::task::{Answer, Developed};
+use super::task::{Answer, Developed, Task};
 use super::wording::Wording;
 
 /// How often a file that is still being written is tried again, and after what pause.
@@ -34,6 +34,8 @@ pub(crate) struct Run<'a> {
     pub(crate) summary: Summary,
     /// How often a file was tried again.
     pub(crate) tries: HashMap<usize, usize>,
+    /// Files whose output may stand in its place, made by a worker or a run that was ended before it could say so.
+    pub(crate) in_doubt: HashSet<usize>,
     pub(crate) inputs_may_vanish: bool,
     pub(crate) on_event: &'a mut dyn FnMut(Event<'_>),
     pub(crate) wording: Wording,
@@ -43,16 +45,25 @@ impl<'a> Run<'a> {
     pub(crate) fn on_progress(&mut self, work: &Work, progress: Progress) -> Next {
         let item = &self.plan.items[work.id];
         match progress {
-            Progress::Begins => self.begun(item),
+            Progress::Begins => self.begun(work, item),
             Progress::Ended(Ok(Answer::Developed(developed))) => self.done(item, *developed),
             Progress::Ended(Ok(_)) => Next::GoOn,
             Progress::Ended(Err(failure)) => self.failed(work.id, item, &failure),
         }
     }
 
-    fn begun(&mut self, item: &'a Item) -> Next {
+    fn begun(&mut self, work: &Work, item: &'a Item) -> Next {
         if let Some(reason) = self.vanished() {
             return self.stop(reason);
+        }
+        if let Some(path) = in_the_way(work) {
+            self.conflict(item, &Conflict::NotOurs { path });
+            return Next::Leave;
+        }
+        let first = !self.tries.contains_key(&work.id);
+        let interrupted = first && self.history.outputs.get(&item.output).is_some_and(|known| known.open);
+        if work.second_try || interrupted {
+            self.in_doubt.insert(work.id);
         }
         let number = names::needs_number(&self.plan.template).then_some(item.number);
         let record = Record::Begun { input: item.source.key.clone(), output: item.output.clone(), number };
@@ -126,7 +137,7 @@ impl<'a> Run<'a> {
             input: item.source.key.clone(),
             output: item.output.clone(),
             error: words.clone(),
-            died: kind == FailureKind::Died,
+            died: kind == FailureKind::Died || self.in_doubt.contains(&id),
             program: VERSION.to_owned(),
             at: journal::now(),
         });
@@ -175,6 +186,17 @@ impl<'a> Run<'a> {
             self.summary.stopped = Some(reason);
         }
         Next::Finish
+    }
+}
+
+/// What stands at the output of a task that must not replace it: it came after the plan was made, so it is not ours, and
+/// the journal must not say that it is.
+fn in_the_way(work: &Work) -> Option<PathBuf> {
+    match &work.task {
+        Task::Develop(task) if !task.overwrite && task.output.symlink_metadata().is_ok() => {
+            Some(task.output.clone())
+        }
+        _ => None,
     }
 }
 

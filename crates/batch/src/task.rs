@@ -53,6 +53,15 @@ pub(crate) enum Task {
 }
 
 impl Task {
+    /// The same once more, after a worker died over it. That may have been after it had put its output in place and
+    /// before it could say so: what stands there now is ours, because nothing stood there when the task was begun.
+    pub(crate) fn once_more(self) -> Self {
+        match self {
+            Self::Develop(develop) => Self::Develop(Develop { overwrite: true, ..develop }),
+            other => other,
+        }
+    }
+
     /// The file that it reads.
     pub(crate) fn input(&self) -> &PathBuf {
         match self {

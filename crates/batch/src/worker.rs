@@ -69,6 +69,19 @@ pub(crate) struct Host<'a> {
 }
 
 impl Host<'_> {
+    /// No more memory than that, where the process is the worker's own.
+    fn limit_memory(&self, bytes: u64) {
+        if self.own_process {
+            process_limits::limit_memory(bytes);
+        }
+    }
+
+    fn unlimit_memory(&self) {
+        if self.own_process {
+            process_limits::unlimit_memory();
+        }
+    }
+
     fn error(&self, error: &Error) -> TaskError {
         let kind = match error {
             Error::DiskFull { .. } => FailureKind::DiskFull,
@@ -125,6 +138,8 @@ fn read(task: &Task, host: &Host<'_>) -> Result<Input, TaskError> {
     let path = task.input();
     let stat = || std::fs::metadata(path).map_err(|e| host.error(&Error::read(path, e)));
     let before = stat()?;
+    // Heads are read by foreign code too.
+    host.limit_memory(need::head(before.len()));
     let bytes = files::read(path).map_err(|e| host.error(&e))?;
     let after = stat()?;
     let same = before.len() == after.len() && modified(&before) == modified(&after);
@@ -159,22 +174,24 @@ fn perform(
     });
     let (input, bytes) = match ready {
         Ok(ready) => ready,
-        Err(error) => return Ok(Answer::Failed(error)),
+        Err(error) => {
+            host.unlimit_memory();
+            return Ok(Answer::Failed(error));
+        }
     };
     connection.say(Answer::Needs { bytes })?;
     let count = match connection.next()? {
         Some(Order::Go { threads }) => threads.max(1),
-        Some(_) | None => return Ok(Answer::Dropped),
+        Some(_) | None => {
+            host.unlimit_memory();
+            return Ok(Answer::Dropped);
+        }
     };
-    if host.own_process {
-        process_limits::limit_memory(bytes);
-    }
+    host.limit_memory(bytes);
     // Only the profiles go to other threads: words may be anybody's function and stay in this one.
     let store = host.store;
     let result = threads.run(count, || guarded_result(&path, || execute(task, input, bytes, store)));
-    if host.own_process {
-        process_limits::unlimit_memory();
-    }
+    host.unlimit_memory();
     Ok(result.unwrap_or_else(|error| {
         Answer::Failed(match error {
             Fault::Task(error) => error,
@@ -189,7 +206,7 @@ fn needed(task: &Task, input: &Input) -> Result<u64, TaskError> {
     let head = input.head.as_ref();
     let (samples, float, pixels) = head.map_or((0, false, 0), |h| (h.samples, h.float, h.header.pixels));
     Ok(match task {
-        Task::Header { .. } => need::WORKER + 2 * len,
+        Task::Header { .. } => need::head(len),
         // A JPEG holds up to some twenty times its size in pixels.
         Task::Thumbnail { .. } => need::WORKER + 40 * len,
         Task::Look { .. } | Task::Calibrate(_) => need::chart(len, samples, pixels),

@@ -1,5 +1,6 @@
 //! Plane geometry: quadrilaterals and the perspective maps between them. Pixel centres have integer coordinates.
 
+use darkroot_colour::decomposition::symmetric_eigen;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Four corners in the sequence top left, top right, bottom right, bottom left of the chart as printed: x to the
@@ -133,10 +134,7 @@ fn linear(pairs: &[([f64; 2], [f64; 2])]) -> Option<Matrix3<f64>> {
         let two = SVector::<f64, 9>::from([0.0, 0.0, 0.0, *x, *y, 1.0, -v * x, -v * y, -v]);
         normal += one * one.transpose() + two * two.transpose();
     }
-    if normal.iter().any(|m| !m.is_finite()) {
-        return None;
-    }
-    let eigen = normal.symmetric_eigen();
+    let eigen = symmetric_eigen(normal)?;
     let smallest = (0..9).min_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]))?;
     let h = eigen.eigenvectors.column(smallest);
     let map = Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]);

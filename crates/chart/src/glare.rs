@@ -1,5 +1,6 @@
 //! Glare in front of a chart and uneven light over it, channel by channel, from all of its patches.
 
+use darkroot_colour::decomposition::least_squares;
 use darkroot_colour::{Xyz, white};
 use nalgebra::{DMatrix, DVector};
 
@@ -68,7 +69,7 @@ impl ChannelLight {
                 weight(k) * [1.0, a, b, c, patch[k] * x, patch[k] * y][column]
             });
             let target = DVector::from_fn(rows.len(), |k, _| weight(k) * measured[rows[k]]);
-            let solved = design.svd(true, true).solve(&target, 1e-12).ok()?;
+            let solved = least_squares(design, &target)?;
             let matrix = [solved[1], solved[2], solved[3]];
             let seen = |[a, b, c]: [f64; 3]| matrix[0] * a + matrix[1] * b + matrix[2] * c;
             let steps = if sloped { (solved[4], solved[5]) } else { (0.0, 0.0) };

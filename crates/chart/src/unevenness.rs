@@ -1,5 +1,6 @@
 //! Uneven light over a chart, from the chart's own patches.
 
+use darkroot_colour::decomposition::least_squares;
 use nalgebra::{DMatrix, DVector};
 
 /// Rounds of reweighting, which keep single patches from bending the plane.
@@ -47,19 +48,29 @@ impl Slope {
                 weights[i] * [1.0, x, y][k]
             });
             let target = DVector::from_fn(rows.len(), |i, _| weights[i] * rows[i].1);
-            found = design.svd(true, true).solve(&target, 1e-12).ok()?;
+            found = least_squares(design, &target)?;
             for (weight, ([x, y], value)) in weights.iter_mut().zip(&rows) {
                 let off = value - found[0] - found[1] * x - found[2] * y;
                 *weight = (1.0 / (1.0 + (off / SOFT).powi(2))).sqrt();
             }
         }
-        Some(Self { across: found[1], down: found[2] })
+        let slope = Self { across: found[1], down: found[2] };
+        slope.range().is_finite().then_some(slope)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn light_without_measure_has_no_slope() {
+        let places: Vec<[f64; 2]> = (0..24).map(|i| [f64::from(i % 6), f64::from(i / 6)]).collect();
+        let mut expected = vec![0.2; 24];
+        // The light of a patch over the smallest number that there is is infinite.
+        expected[3] = 5e-324;
+        assert_eq!(Slope::of(&places, &[0.2; 24], &expected), None);
+    }
 
     #[test]
     fn a_slope_is_found_in_spite_of_some_wrong_patches() {

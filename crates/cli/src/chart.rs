@@ -10,6 +10,7 @@ use darkroot::{Settings, charts, find_charts, path_text, shown};
 use serde_json::json;
 
 use crate::Outcome;
+use crate::deadline::Deadline;
 
 /// Find colour charts in raw files and pictures: corners, which chart, which way round
 ///
@@ -24,6 +25,9 @@ pub(crate) struct Chart {
     /// describes one; several may be given
     #[arg(long = "chart", value_name = "CHART")]
     charts: Vec<String>,
+
+    #[command(flatten)]
+    deadline: Deadline,
 
     /// One line of JSON for each file
     #[arg(long)]
@@ -50,8 +54,10 @@ impl Chart {
         };
         let settings = Settings::default();
         let mut outcome = Outcome::Done;
-        for file in &self.files {
-            let found = match find_charts(file, &layouts, &settings) {
+        for (number, file) in self.files.iter().enumerate() {
+            let after = self.files.len() - number - 1;
+            let look = || find_charts(file, &layouts, &settings);
+            let found = match self.deadline.over(file, after, |_| (), look) {
                 Ok(found) => found,
                 Err(fault) => {
                     crate::say(format_args!("error: {}", crate::hint::words(&fault)));

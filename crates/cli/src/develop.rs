@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, ensure};
 use clap::Args;
 use darkroot::{Control, Job, ProfileStore, Report, Target, path_text, plan_outputs, shown};
+use darkroot_batch::Failure;
 
+use crate::deadline::Deadline;
 use crate::hint;
 use crate::picture::{Order, Picture, source_paths, sources};
 use crate::progress::Progress;
@@ -34,6 +36,9 @@ pub(crate) struct Develop {
 
     #[command(flatten)]
     picture: Picture,
+
+    #[command(flatten)]
+    deadline: Deadline,
 
     /// Report each file as a line of JSON on stdout
     #[arg(long)]
@@ -72,10 +77,17 @@ impl Develop {
             progress.begin(number, job);
             let mut settings = order.settings.clone();
             settings.overwrite = self.overwrite;
-            let mut result = {
-                let step = |step| progress.step(step);
-                darkroot::develop(job, &settings, &store, Control { step: Some(&step), ..Control::default() })
+            let step = |step| progress.step(step);
+            let control = Control { step: Some(&step), ..Control::default() };
+            let late = |failure: &Failure| {
+                if self.json {
+                    // The program ends here: whoever should read this line is told by the exit code too.
+                    let _ = print_line(order, failed(job, failure));
+                }
             };
+            let mut result = self.deadline.over(&job.input, jobs.len() - number - 1, late, || {
+                darkroot::develop(job, &settings, &store, control)
+            });
             match &mut result {
                 Ok(report) => {
                     report.notes.extend(order.notes.iter().cloned());
@@ -154,17 +166,26 @@ fn words(report: &Report, order: &Order, verbose: bool) -> String {
 }
 
 fn print_json(job: &Job, order: &Order, result: &Result<Report, darkroot::Error>) -> Result<()> {
-    let mut line = match result {
+    let line = match result {
         Ok(report) => {
             let mut line = serde_json::to_value(report)?;
             line["status"] = "done".into();
             line
         }
-        Err(error) => serde_json::json!({
-            "status": "failed", "input": path_text::text(&job.input), "output": path_text::text(&job.output),
-            "error": hint::words(error),
-        }),
+        Err(error) => failed(job, error),
     };
+    print_line(order, line)
+}
+
+/// What is said of a file that failed.
+fn failed(job: &Job, error: &(dyn std::error::Error + 'static)) -> serde_json::Value {
+    serde_json::json!({
+        "status": "failed", "input": path_text::text(&job.input), "output": path_text::text(&job.output),
+        "error": hint::words(error),
+    })
+}
+
+fn print_line(order: &Order, mut line: serde_json::Value) -> Result<()> {
     line["settings_from"] = source_paths(&order.effective).into();
     writeln!(crate::out::json(), "{line}")?;
     Ok(())

@@ -10,6 +10,7 @@ use clap::builder::TypedValueParser;
 use darkroot::{Inspection, Key, ProfileStore, Settings, settings};
 use darkroot_raw::Decoder;
 
+use crate::deadline::Deadline;
 use crate::{Outcome, picture};
 use darkroot::shown;
 
@@ -39,6 +40,9 @@ pub(crate) struct Inspect {
     /// Library that decodes the samples
     #[arg(long, default_value = "flashraw", value_parser = decoder())]
     decoder: Decoder,
+
+    #[command(flatten)]
+    deadline: Deadline,
 }
 
 fn decoder() -> impl TypedValueParser<Value = Decoder> {
@@ -51,7 +55,9 @@ impl Inspect {
             let [file] = &self.files[..] else {
                 anyhow::bail!("`--preview` takes the preview of one file; name one file");
             };
-            return Ok(match darkroot::save_preview(file, out, self.overwrite) {
+            let saved =
+                self.deadline.over(file, 0, |_| (), || darkroot::save_preview(file, out, self.overwrite));
+            return Ok(match saved {
                 Ok(preview) => {
                     crate::say(format_args!(
                         "{}: {} x {} pixels",
@@ -71,8 +77,10 @@ impl Inspect {
         let store = ProfileStore::user_folder()
             .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
         let mut outcome = Outcome::Done;
-        for file in &self.files {
-            match darkroot::inspect(file, &settings, &store, self.samples_hash) {
+        for (number, file) in self.files.iter().enumerate() {
+            let after = self.files.len() - number - 1;
+            let look = || darkroot::inspect(file, &settings, &store, self.samples_hash);
+            match self.deadline.over(file, after, |_| (), look) {
                 Ok(inspection) => {
                     let text = if self.json {
                         serde_json::to_string(&inspection)? + "\n"

@@ -5,6 +5,7 @@
 
 mod batch;
 mod chart;
+mod deadline;
 mod develop;
 mod evaluate;
 mod hint;
@@ -53,6 +54,24 @@ struct Common {
     threads: Option<usize>,
 }
 
+/// Threads for each core at most: more only stand in each other's way.
+const THREADS_OF_CORE: usize = 4;
+
+impl Common {
+    /// Takes no more threads than the machine can use, and says so.
+    fn bound_threads(&mut self) {
+        let cores = darkroot_batch::system::threads();
+        let most = THREADS_OF_CORE * cores;
+        if let Some(asked) = self.threads.filter(|asked| *asked > most) {
+            self.threads = Some(most);
+            if !self.quiet {
+                let machine = if cores == 1 { "one core".to_owned() } else { format!("{cores} cores") };
+                say(format_args!("note: this machine has {machine}: {most} threads are used, not {asked}"));
+            }
+        }
+    }
+}
+
 #[derive(Debug, Subcommand)]
 enum Command {
     Develop(develop::Develop),
@@ -69,6 +88,9 @@ enum Command {
     Worker(batch::Worker),
 }
 
+/// Exit code when some file failed.
+const SOME_FAILED: u8 = 1;
+
 /// How a command that ran to its end came out.
 enum Outcome {
     Done,
@@ -80,9 +102,10 @@ enum Outcome {
 }
 
 fn main() -> ExitCode {
-    let cli = usage::parse();
+    let mut cli = usage::parse();
     keep_decoders_quiet();
     interrupt::handle();
+    cli.common.bound_threads();
     if let Some(threads) = cli.common.threads {
         // Fails only when the pool exists already, which nothing before this line makes.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
@@ -107,7 +130,7 @@ fn main() -> ExitCode {
     });
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::SomeFailed) => ExitCode::from(1),
+        Ok(Outcome::SomeFailed) => ExitCode::from(SOME_FAILED),
         Ok(Outcome::Rejected) => ExitCode::from(3),
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         // Whoever reads our output has seen enough.

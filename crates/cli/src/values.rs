@@ -1,5 +1,7 @@
 //! Values of options that are more than a word from a list and no settings of a picture.
 
+use std::time::Duration;
+
 use darkroot::settings::{self, NotAValue};
 use darkroot_develop::OutputSpace;
 
@@ -11,6 +13,12 @@ pub(crate) fn space(text: &str) -> Result<OutputSpace, NotAValue> {
 /// `--model`.
 pub(crate) fn kind(text: &str) -> Result<darkroot_profile::Kind, String> {
     text.parse().map_err(|e: darkroot_profile::kind::UnknownKind| e.to_string())
+}
+
+/// `--timeout` and other times.
+pub(crate) fn time(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("`{text}` is no time: write 90s, 10m or 1h");
+    humantime::parse_duration(text).ok().filter(|t| !t.is_zero()).ok_or_else(wrong)
 }
 
 /// `--corners`.

@@ -42,6 +42,8 @@ pub use weights::TristimulusWeights;
 
 pub mod statistics;
 
+pub mod decomposition;
+
 // No colour, but at the bottom of the house, where every crate with loops over pixels finds it.
 pub mod simd;
 

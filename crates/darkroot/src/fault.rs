@@ -39,6 +39,16 @@ pub enum ChartError {
     /// A rendered picture that cannot be read.
     #[error("cannot be read as a picture: {0}")]
     Picture(image::ImageError),
+    /// A rendered picture that would take too much memory.
+    #[error(
+        "is too large to look for a chart in ({width} x {height} pixels); reduce it or cut the chart out"
+    )]
+    Large {
+        /// Width of the picture.
+        width: u32,
+        /// Its height.
+        height: u32,
+    },
     /// A picture without pixels.
     #[error("has no pixels")]
     Empty,

@@ -77,6 +77,26 @@ pub enum Damage {
     /// More entries than in any real directory.
     #[error("one of its directories claims thousands of entries")]
     ManyEntries,
+    /// Strips or tiles that share bytes.
+    #[error("its strips or tiles overlap")]
+    OverlappingPieces,
+    /// A strip or tile (JPEG, JPEG XL) that is much larger than its place in the picture.
+    #[error("one of its strips or tiles claims more samples than its place in the picture has")]
+    LargeFrame,
+    /// More samples than its bytes can hold.
+    #[error("its {bytes} bytes cannot hold the {samples} samples that it claims")]
+    FewBytes {
+        /// Bytes of the file.
+        bytes: u64,
+        /// Samples that its headers claim.
+        samples: u64,
+    },
+    /// An opcode list that takes longer than that of any real file.
+    #[error("its {list} asks for more work than that of any camera")]
+    ManyOperations {
+        /// Name of the list.
+        list: &'static str,
+    },
     /// A black level that is infinite or not a number.
     #[error("its black level is not a number")]
     BlackLevel,
@@ -133,6 +153,9 @@ pub enum TooLarge {
     /// The frame.
     #[error("{} x {} pixels", .0.width, .0.height)]
     Frame(Size),
+    /// A strip or tile.
+    #[error("a strip or tile of {0} samples")]
+    Samples(u64),
     /// What the decoder says.
     #[error("{message}")]
     Decoder {

@@ -1,10 +1,10 @@
 //! What the camera wrote about the shot: standard Exif fields of any container.
 
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
-use exif::{Context, In, Reader, Value as ExifValue};
 use flashraw::{PreviewEncoding, RawMetadata};
 
 use crate::screen::Container;
+use crate::tiff::{Directories, EXIF_IFD, Entry, GPS_IFD};
 
 /// Fields of the primary directory that still hold for the developed picture.
 const IMAGE_TAGS: [u16; 6] = [0x010e, tag::MAKE, tag::MODEL, tag::DATE_TIME, tag::ARTIST, tag::COPYRIGHT];
@@ -19,34 +19,47 @@ const EXIF_TAGS: [u16; 53] = [
     0xa461,
 ];
 
+/// Exif 2.32 defines no tags beyond this one in the directory of the position.
+const LAST_GPS_TAG: u16 = 0x1f;
+
 /// No real text field is longer.
 const MAX_TEXT: usize = 4096;
-/// No field that is carried over is longer.
+/// No field that is carried over has more values.
 const MAX_VALUES: usize = 1024;
+/// Bytes of the largest field that is carried over: the longest list of fractions.
+const MAX_LENGTH: usize = 8 * MAX_VALUES;
 
 /// Reads the standard fields of the file itself, or of its embedded JPEG where the container is not TIFF.
+///
+/// However many entries there are and whatever they claim, what is kept of them is bounded: each wanted field once, of
+/// [`MAX_LENGTH`] bytes at most.
 pub(crate) fn read(bytes: &[u8], container: &Container<'_>, meta: &RawMetadata) -> Metadata {
-    let block = if container.tiff.is_some() { Some(bytes) } else { embedded_jpeg(bytes, meta) };
-    let Some(block) = block else { return Metadata::default() };
-    let mut reader = Reader::new();
-    reader.continue_on_error(true);
-    let parsed = reader
-        .read_from_container(&mut std::io::Cursor::new(block))
-        .or_else(|e| e.distill_partial_result(|_| ()));
+    if let Some(tiff) = &container.tiff {
+        return fields(tiff);
+    }
+    let block = embedded_jpeg(bytes, meta).and_then(exif_of_jpeg);
     // A file with no readable Exif develops all the same; its fields are then few.
-    let Ok(parsed) = parsed else { return Metadata::default() };
+    let tiff = block.and_then(|block| Directories::walk(block).ok().flatten());
+    tiff.map_or_else(Metadata::default, |tiff| fields(&tiff))
+}
+
+/// The wanted fields of the first directory and of those below it.
+fn fields(tiff: &Directories<'_>) -> Metadata {
     let mut metadata = Metadata::default();
-    for field in parsed.fields().filter(|f| f.ifd_num == In::PRIMARY) {
-        let number = field.tag.number();
-        let directory = match field.tag.context() {
-            Context::Tiff if IMAGE_TAGS.contains(&number) => Directory::Image,
-            Context::Exif if EXIF_TAGS.contains(&number) => Directory::Exif,
-            Context::Gps => Directory::Gps,
-            _ => continue,
-        };
-        if let Some(value) = value(&field.value) {
-            metadata.set(directory, number, value);
+    let Some(image) = tiff.all.first() else { return metadata };
+    let mut take = |entries: &[Entry], directory, wanted: &dyn Fn(u16) -> bool| {
+        for entry in entries.iter().filter(|e| wanted(e.tag)) {
+            if let Some(value) = value(tiff, entry) {
+                metadata.set(directory, entry.tag, value);
+            }
         }
+    };
+    take(&image.entries, Directory::Image, &|tag| IMAGE_TAGS.contains(&tag));
+    if let Some(exif) = tiff.below(image, EXIF_IFD) {
+        take(&exif.entries, Directory::Exif, &|tag| EXIF_TAGS.contains(&tag));
+    }
+    if let Some(gps) = tiff.below(image, GPS_IFD) {
+        take(&gps.entries, Directory::Gps, &|tag| tag <= LAST_GPS_TAG);
     }
     metadata
 }
@@ -87,30 +100,44 @@ fn embedded_jpeg<'a>(bytes: &'a [u8], meta: &RawMetadata) -> Option<&'a [u8]> {
     bytes.get(start..start.checked_add(usize::try_from(largest.length).ok()?)?)
 }
 
-fn value(value: &ExifValue) -> Option<Value> {
-    let value = match value {
-        ExifValue::Ascii(lines) => {
-            let lines = lines.iter().map(|l| String::from_utf8_lossy(l).trim_matches(['\0', ' ']).to_owned());
-            let text = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
-            return (!text.is_empty() && text.len() <= MAX_TEXT).then_some(Value::Text(text));
+/// The Exif block of a JPEG: the first APP1 segment that says so (Exif 2.32, 4.7.2).
+fn exif_of_jpeg(jpeg: &[u8]) -> Option<&[u8]> {
+    let mut rest = jpeg.strip_prefix(&[0xff, 0xd8])?;
+    while let [0xff, marker, high, low, ..] = *rest {
+        let (segment, after) =
+            rest.get(2..)?.split_at_checked(usize::from(u16::from_be_bytes([high, low])))?;
+        match marker {
+            0xe1 if segment.get(2..8) == Some(b"Exif\0\0") => return segment.get(8..),
+            // The scan: headers are over.
+            0xda => return None,
+            _ => rest = after,
         }
-        ExifValue::Byte(v) => Value::Bytes(v.clone()),
-        ExifValue::Undefined(v, _) => Value::Undefined(v.clone()),
-        ExifValue::Short(v) => Value::Shorts(v.clone()),
-        ExifValue::Long(v) => Value::Longs(v.clone()),
-        ExifValue::Rational(v) => Value::Rationals(v.iter().map(|r| (r.num, r.denom)).collect()),
-        ExifValue::SRational(v) => Value::SignedRationals(v.iter().map(|r| (r.num, r.denom)).collect()),
+    }
+    None
+}
+
+/// The value of an entry; `None` for types that no wanted field has, and for values larger than any real one.
+fn value(tiff: &Directories<'_>, entry: &Entry) -> Option<Value> {
+    let bytes = tiff.value(entry, MAX_LENGTH).filter(|bytes| !bytes.is_empty())?;
+    let pairs = || tiff.longs(bytes).as_chunks().0.iter().map(|&[n, d]| (n, d)).collect::<Vec<(u32, u32)>>();
+    let value = match entry.kind {
+        2 => return text(bytes),
+        1 => Value::Bytes(bytes.to_vec()),
+        7 => Value::Undefined(bytes.to_vec()),
+        3 => Value::Shorts(tiff.shorts(bytes)),
+        4 => Value::Longs(tiff.longs(bytes)),
+        5 => Value::Rationals(pairs()),
+        10 => Value::SignedRationals(pairs().into_iter().map(|(n, d)| (n as i32, d as i32)).collect()),
         _ => return None,
     };
-    let count = match &value {
-        Value::Bytes(v) | Value::Undefined(v) => v.len(),
-        Value::Shorts(v) => v.len(),
-        Value::Longs(v) => v.len(),
-        Value::Rationals(v) => v.len(),
-        Value::SignedRationals(v) => v.len(),
-        Value::Text(_) => 1,
-    };
-    (1..=MAX_VALUES).contains(&count).then_some(value)
+    (entry.count <= MAX_VALUES as u64).then_some(value)
+}
+
+/// The lines of a text field, which zeros divide.
+fn text(bytes: &[u8]) -> Option<Value> {
+    let lines = bytes.split(|&b| b == 0).map(|l| String::from_utf8_lossy(l).trim_matches(' ').to_owned());
+    let text = lines.filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
+    (!text.is_empty() && text.len() <= MAX_TEXT).then_some(Value::Text(text))
 }
 
 /// A positive number as a fraction: 1/n where it is one, else in thousandths.
@@ -134,6 +161,59 @@ fn exif_date(iso: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A big-endian TIFF whose first directory points to an Exif directory with these entries of values at the end.
+    fn tiff(entries: &[(u16, u16, u32)], values: &[u8]) -> Vec<u8> {
+        let mut bytes = b"MM\0\x2a\0\0\0\x08\0\x01\x87\x69\0\x04\0\0\0\x01\0\0\0\x1a\0\0\0\0".to_vec();
+        let values_at = (bytes.len() + 2 + 12 * entries.len() + 4) as u32;
+        bytes.extend((entries.len() as u16).to_be_bytes());
+        for (tag, kind, count) in entries {
+            bytes.extend([tag.to_be_bytes(), kind.to_be_bytes()].concat());
+            bytes.extend([count.to_be_bytes(), values_at.to_be_bytes()].concat());
+        }
+        bytes.extend([0; 4]);
+        bytes.extend(values);
+        bytes
+    }
+
+    fn read_fields(bytes: &[u8]) -> Metadata {
+        fields(&Directories::walk(bytes).unwrap().unwrap())
+    }
+
+    #[test]
+    fn values_of_every_type_are_read_in_the_file_s_byte_order() {
+        let values = [0, 0, 0, 7, 0xff, 0xff, 0xff, 0xfe, 0, 0];
+        let wanted = [(0x829a, 5, 1), (0x9204, 10, 1), (0x8827, 3, 4), (0x8830, 4, 2), (0x9286, 7, 6)];
+        let metadata = read_fields(&tiff(&wanted, &values));
+        let of = |tag| metadata.get(Directory::Exif, tag).unwrap().clone();
+        assert_eq!(of(0x829a), Value::Rationals(vec![(7, 0xffff_fffe)]));
+        assert_eq!(of(0x9204), Value::SignedRationals(vec![(7, -2)]));
+        assert_eq!(of(0x8827), Value::Shorts(vec![0, 7, 0xffff, 0xfffe]));
+        assert_eq!(of(0x8830), Value::Longs(vec![7, 0xffff_fffe]));
+        assert_eq!(of(0x9286), Value::Undefined(values[..6].to_vec()));
+        let lines = read_fields(&tiff(&[(0xa434, 2, 12)], b"50 mm\0 f/2 \0"));
+        assert_eq!(lines.text(Directory::Exif, 0xa434), Some("50 mm; f/2"));
+    }
+
+    #[test]
+    fn values_larger_than_any_real_one_and_unknown_types_are_left_out() {
+        let block = vec![b'a'; 20_000];
+        let large =
+            [(0x8830, 4, 1025), (0x9003, 2, 4097), (0x9286, 7, 1025), (0x9291, 13, 9), (0x9292, 2, u32::MAX)];
+        assert_eq!(read_fields(&tiff(&large, &block)), Metadata::default());
+        let largest = [(0x829a, 5, 1024), (0x9003, 2, 4096), (0x9286, 7, 1024)];
+        assert_eq!(read_fields(&tiff(&largest, &block)).fields().len(), 3);
+    }
+
+    #[test]
+    fn the_block_of_a_jpeg_is_its_first_exif_segment() {
+        let jpeg = b"\xff\xd8\xff\xe0\0\x04JF\xff\xe1\0\x05XMP\xff\xe1\0\x0cExif\0\0MM\0\x2a\xff\xda\0\x02";
+        assert_eq!(exif_of_jpeg(jpeg), Some(&b"MM\0\x2a"[..]));
+        for length in 0..jpeg.len() - 4 {
+            assert_eq!(exif_of_jpeg(&jpeg[..length]), None, "{length}");
+        }
+        assert_eq!(exif_of_jpeg(b"\xff\xd8\xff\xda\0\x02\xff\xe1\0\x0aExif\0\0MM"), None);
+    }
 
     #[test]
     fn exposure_times_become_the_fractions_that_cameras_show() {

@@ -10,7 +10,7 @@ use crate::flash_facts::{
     as_shot, black_level, calibrations, camera, layout, pixel_aspect, rect, white_level,
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
-use crate::{Damage, Error, Limits, TooLarge, Unknown, exif, opcodes};
+use crate::{Damage, Error, Limits, TooLarge, Unknown, exif, opcode_work, opcodes};
 
 /// What [`Source::decoder`] says.
 const NAME: &str = "flashraw 0.1.1";
@@ -178,12 +178,31 @@ fn decode_error(e: &flashraw::Error, info: &FrameInfo) -> Error {
 }
 
 fn open<'a>(bytes: &'a [u8], limits: &Limits) -> Result<FlashRaw<'a>, Error> {
-    FlashRaw::open_with(bytes, flash_limits(limits)).map_err(|e| match error(&e) {
+    let raw = FlashRaw::open_with(bytes, flash_limits(limits)).map_err(|e| match error(&e) {
         Error::NotRaw { .. } if bytes.starts_with(b"II") || bytes.starts_with(b"MM") => {
             Error::NotRaw { found: "it is a TIFF file without raw samples that this program knows" }
         }
         other => other,
-    })
+    })?;
+    bytes_suffice(bytes.len() as u64, raw.frame_info())?;
+    opcode_work::check(raw.frame_info())?;
+    Ok(raw)
+}
+
+/// Refuses a frame that cannot come of so few bytes. Files that were merely cut off pass: the decoder says where they end.
+fn bytes_suffice(bytes: u64, info: &FrameInfo) -> Result<(), Error> {
+    use flashraw::Compression as C;
+    /// A sample takes one bit at least where it is coded by itself; eight times less is a file that was cut off.
+    const SINGLE: u64 = 64;
+    /// Deflate makes 1032 bytes of one at most; others code blocks of even colour in some bits.
+    const BLOCKS: u64 = 4096;
+    let by_blocks = matches!(info.compression, C::Deflate | C::LossyJpeg | C::JpegXl | C::CanonCrx | C::Vc5);
+    let of_byte = if by_blocks { BLOCKS } else { SINGLE };
+    let samples = u64::from(info.width).saturating_mul(info.height.into()).saturating_mul(info.cpp.into());
+    if samples > bytes.saturating_mul(of_byte) {
+        return Err(Damage::FewBytes { bytes, samples }.into());
+    }
+    Ok(())
 }
 
 fn flash_limits(limits: &Limits) -> flashraw::Limits {

@@ -1,7 +1,8 @@
 //! Bytes of a raw file to a [`Capture`]: the only part of Darkroot that meets hostile input.
 //!
 //! [`decode`] screens the container first (`screen.rs`), so that no decoder sees a file whose directories loop
-//! or whose sizes are beyond the [`Limits`]. Then one of two decoders runs, behind a guard that turns a panic
+//! or whose sizes are beyond the [`Limits`], whose strips overlap or are larger than their place
+//! (`pieces.rs`). Then one of two decoders runs, behind a guard that turns a panic
 //! into an error: flashraw (default) or rawloader (older makers, cross-check).
 //!
 //! **What it does not do:** it opens no files, it corrects nothing but what the file's own OpcodeList1 asks for,
@@ -21,6 +22,9 @@ pub use preview::{Preview, preview};
 pub mod samples;
 pub use samples::samples_hash;
 
+mod jpeg_frame;
+mod jxl_frame;
+mod pieces;
 mod screen;
 mod tiff;
 
@@ -29,6 +33,7 @@ mod flash_facts;
 mod loader;
 
 mod exif;
+mod opcode_work;
 mod opcodes;
 
 /// Which library decodes the samples.
@@ -50,7 +55,7 @@ pub enum Decoder {
 /// # Errors
 /// Anything wrong with the file, as one [`Error`] that says what and what to do. Never panics for input.
 pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture, Error> {
-    let container = screen::screen(bytes)?;
+    let container = screen::screen(bytes, limits)?;
     match decoder {
         Decoder::Flashraw => guarded("flashraw", || flash::decode(bytes, &container, limits)),
         Decoder::Rawloader => {
@@ -73,7 +78,7 @@ pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture
 /// # Errors
 /// As [`decode`].
 pub fn header(bytes: &[u8], limits: &Limits) -> Result<Capture, Error> {
-    let container = screen::screen(bytes)?;
+    let container = screen::screen(bytes, limits)?;
     guarded("flashraw", || flash::header(bytes, &container, limits))
 }
 

@@ -6,7 +6,7 @@ use darkroot_photo::correction::{Area, Correction, GainMap, Vignette, Warp};
 /// Flag bit: a reader that does not know the opcode may skip it.
 const OPTIONAL: u32 = 1;
 /// Largest number of opcodes that is taken seriously.
-const MAX_OPCODES: u32 = 4096;
+pub(crate) const MAX_OPCODES: u32 = 4096;
 
 /// Parses a list. What cannot be applied is named in `notes`.
 pub(crate) fn parse(list: &[u8], name: &str, notes: &mut Vec<String>) -> Vec<Correction> {
@@ -100,10 +100,10 @@ fn correction(id: u32, body: &mut Reader<'_>) -> Option<Correction> {
 }
 
 /// Big-endian reading that cannot run out of bounds; infinities and NaN count as damage.
-struct Reader<'a>(&'a [u8]);
+pub(crate) struct Reader<'a>(pub(crate) &'a [u8]);
 
 impl<'a> Reader<'a> {
-    fn take(&mut self, n: usize) -> Option<&'a [u8]> {
+    pub(crate) fn take(&mut self, n: usize) -> Option<&'a [u8]> {
         let (head, tail) = self.0.split_at_checked(n)?;
         self.0 = tail;
         Some(head)
@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
         self.array().map(u16::from_be_bytes)
     }
 
-    fn u32(&mut self) -> Option<u32> {
+    pub(crate) fn u32(&mut self) -> Option<u32> {
         self.array().map(u32::from_be_bytes)
     }
 

@@ -3,7 +3,7 @@
 use darkroot_photo::{Orientation, Size};
 use flashraw::{FlashRaw, PreviewEncoding};
 
-use crate::{Error, guarded, screen};
+use crate::{Error, Limits, guarded, screen};
 
 /// An embedded JPEG.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub struct Preview {
 /// # Errors
 /// [`Error::NotRaw`] or [`Error::Damaged`] when the container cannot be read.
 pub fn preview(bytes: &[u8]) -> Result<Option<Preview>, Error> {
-    screen::screen(bytes)?;
+    screen::screen(bytes, &Limits::default())?;
     guarded("flashraw", || {
         let raw = FlashRaw::open(bytes).map_err(|e| crate::flash::error(&e))?;
         let largest = raw

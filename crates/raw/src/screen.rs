@@ -1,7 +1,7 @@
 //! The first look at a file: is it a raw container at all, and is it safe to hand to a decoder?
 
-use crate::Error;
 use crate::tiff::Directories;
+use crate::{Error, Limits, pieces};
 
 /// What the screen learnt of a file's container.
 #[derive(Debug)]
@@ -17,12 +17,17 @@ pub(crate) const WHITE_LEVEL: u16 = 0xc61d;
 /// DNG LinearizationTable.
 pub(crate) const LINEARIZATION_TABLE: u16 = 0xc618;
 
-/// Refuses what is no raw file, and TIFF structures that would send a careless decoder round in circles.
-pub(crate) fn screen(bytes: &[u8]) -> Result<Container<'_>, Error> {
+/// Refuses what is no raw file, and TIFF structures that would send a careless decoder round in circles or make it ask
+/// for gigabytes.
+pub(crate) fn screen<'a>(bytes: &'a [u8], limits: &Limits) -> Result<Container<'a>, Error> {
     if let Some(found) = known_other(bytes) {
         return Err(Error::NotRaw { found });
     }
-    Ok(Container { tiff: Directories::walk(bytes)? })
+    let tiff = Directories::walk(bytes)?;
+    if let Some(tiff) = &tiff {
+        pieces::check(tiff, limits)?;
+    }
+    Ok(Container { tiff })
 }
 
 /// Names common files that are no raw photographs, by their first bytes.

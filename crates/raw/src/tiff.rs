@@ -9,8 +9,8 @@ use crate::{Damage, Error};
 
 /// Tags whose values point to further directories.
 const SUB_IFDS: u16 = 0x014a;
-const EXIF_IFD: u16 = 0x8769;
-const GPS_IFD: u16 = 0x8825;
+pub(crate) const EXIF_IFD: u16 = 0x8769;
+pub(crate) const GPS_IFD: u16 = 0x8825;
 
 /// No real raw file has more directories than this (bursts in one DNG have a few dozen).
 const MAX_DIRECTORIES: usize = 512;
@@ -23,8 +23,8 @@ const MAX_DEPTH: usize = 8;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
     pub(crate) tag: u16,
-    kind: u16,
-    count: u64,
+    pub(crate) kind: u16,
+    pub(crate) count: u64,
     /// Where the value stands in the file.
     offset: usize,
 }
@@ -33,6 +33,14 @@ pub(crate) struct Entry {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Directory {
     pub(crate) entries: Vec<Entry>,
+}
+
+impl Directory {
+    /// The first integer of the entry with this tag.
+    pub(crate) fn number(&self, tiff: &Directories<'_>, tag: u16) -> Option<u64> {
+        let entry = self.entries.iter().find(|e| e.tag == tag)?;
+        tiff.integers(entry, 1).first().copied()
+    }
 }
 
 /// All directories of a file, in the order met.
@@ -152,6 +160,33 @@ impl<'a> Directories<'a> {
             .collect()
     }
 
+    /// The directory that an entry of another points to, as Exif and GPS have it.
+    pub(crate) fn below(&self, directory: &Directory, tag: u16) -> Option<Directory> {
+        let offset = directory.number(self, tag)?;
+        self.directory(offset).ok().flatten().map(|(directory, _)| directory)
+    }
+
+    /// The bytes of an entry's value; `None` when there are more than `limit` or they do not lie in the file.
+    pub(crate) fn value(&self, entry: &Entry, limit: usize) -> Option<&'a [u8]> {
+        let length = usize::try_from(entry.count.checked_mul(size_of_kind(entry.kind))?).ok()?;
+        if length > limit {
+            return None;
+        }
+        self.bytes.get(entry.offset..entry.offset.checked_add(length)?)
+    }
+
+    /// Numbers of 16 bits in the byte order of the file.
+    pub(crate) fn shorts(&self, bytes: &[u8]) -> Vec<u16> {
+        let read = if self.little_endian { u16::from_le_bytes } else { u16::from_be_bytes };
+        bytes.as_chunks().0.iter().map(|&b| read(b)).collect()
+    }
+
+    /// Numbers of 32 bits in the byte order of the file.
+    pub(crate) fn longs(&self, bytes: &[u8]) -> Vec<u32> {
+        let read = if self.little_endian { u32::from_le_bytes } else { u32::from_be_bytes };
+        bytes.as_chunks().0.iter().map(|&b| read(b)).collect()
+    }
+
     /// Where the single bytes of the first entry with this tag stand in the file; empty for other types.
     pub(crate) fn byte_positions(&self, tag: u16) -> std::ops::Range<usize> {
         let entry =
@@ -160,6 +195,11 @@ impl<'a> Directories<'a> {
             let end = e.offset.saturating_add(e.count.min(MAX_ENTRIES as u64) as usize);
             e.offset.min(self.bytes.len())..end.min(self.bytes.len())
         })
+    }
+
+    /// The whole file.
+    pub(crate) fn bytes(&self) -> &'a [u8] {
+        self.bytes
     }
 
     /// Whether any directory has the tag.

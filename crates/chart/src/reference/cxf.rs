@@ -1,5 +1,7 @@
 //! CxF 3 (ISO 17972): colours as XML.
 
+use std::collections::HashMap;
+
 use darkroot_colour::{Lab, Xyz};
 use roxmltree::{Document, Node};
 
@@ -8,13 +10,31 @@ use super::{
     ImpossibleColour, NotAReference, Reference, ReferenceError, checked_lab, checked_reflectance, checked_xyz,
 };
 
+/// Elements inside elements, in no real file half as deep.
+const MAX_DEPTH: usize = 64;
+/// Attributes of one element.
+const MAX_ATTRIBUTES: usize = 100;
+/// Declarations of name spaces in the whole file.
+const MAX_NAMESPACES: usize = 1000;
+
 /// Reads every object that has a colour: its reflectance, else its XYZ, else its Lab.
 pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
+    // The reader of XML compares each attribute with all before it, and each element has the name spaces of those
+    // around it. No `<` can stand in an attribute.
+    let attributes = text.split('<').map(|element| element.matches('=').count()).max().unwrap_or(0);
+    if attributes > MAX_ATTRIBUTES || text.matches("xmlns").count() > MAX_NAMESPACES {
+        return Err(NotAReference::Crowded.into());
+    }
     let document = Document::parse(text).map_err(NotAReference::Xml)?;
     let root = document.root_element();
+    // What looks below elements takes a time that goes with the depth.
+    if root.descendants().any(|n| n.ancestors().nth(MAX_DEPTH).is_some()) {
+        return Err(NotAReference::Deep.into());
+    }
     if root.tag_name().name() != "CxF" {
         return Err(NotAReference::OtherXml { element: root.tag_name().name().to_owned() }.into());
     }
+    let ranges = ranges(&root);
     let objects = root.descendants().filter(|n| n.tag_name().name() == "Object");
     let mut patches = Vec::new();
     for (i, object) in objects.enumerate() {
@@ -22,7 +42,7 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
             .attribute("Name")
             .or(object.attribute("Id"))
             .map_or_else(|| (i + 1).to_string(), str::to_owned);
-        if let Some(colour) = colour(&root, &object, &name)? {
+        if let Some(colour) = colour(&ranges, &object, &name)? {
             patches.push((name, colour));
         }
     }
@@ -33,7 +53,7 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
 }
 
 fn colour(
-    root: &Node<'_, '_>,
+    ranges: &Ranges<'_>,
     object: &Node<'_, '_>,
     name: &str,
 ) -> Result<Option<ReferenceColour>, ReferenceError> {
@@ -45,7 +65,7 @@ fn colour(
     if let Some(node) = find("ReflectanceSpectrum") {
         let values: Vec<f64> =
             node.text().unwrap_or_default().split_whitespace().map(number).collect::<Result<_, _>>()?;
-        let (start, step) = range(root, &node).ok_or_else(|| ReferenceError::Colour {
+        let (start, step) = range(ranges, &node).ok_or_else(|| ReferenceError::Colour {
             patch: name.to_owned(),
             fault: ImpossibleColour::NoWavelengths,
         })?;
@@ -73,14 +93,23 @@ fn colour(
     Ok(None)
 }
 
+/// The WavelengthRange of each specification that has one, by its Id.
+type Ranges<'a> = HashMap<&'a str, Node<'a, 'a>>;
+
+fn ranges<'a>(root: &Node<'a, 'a>) -> Ranges<'a> {
+    let mut ranges = HashMap::new();
+    for specification in root.descendants().filter(|n| n.tag_name().name() == "ColorSpecification") {
+        let range = specification.descendants().find(|n| n.tag_name().name() == "WavelengthRange");
+        if let (Some(id), Some(range)) = (specification.attribute("Id"), range) {
+            ranges.entry(id).or_insert(range);
+        }
+    }
+    ranges
+}
+
 /// First wavelength and step, nm: on the spectrum itself or in the specification that it names.
-fn range(root: &Node<'_, '_>, spectrum: &Node<'_, '_>) -> Option<(f64, f64)> {
-    let wanted = spectrum.attribute("ColorSpecification");
-    let specification = root.descendants().find(|n| {
-        n.tag_name().name() == "ColorSpecification" && wanted.is_some() && n.attribute("Id") == wanted
-    });
-    let stated =
-        specification.and_then(|s| s.descendants().find(|n| n.tag_name().name() == "WavelengthRange"));
+fn range(ranges: &Ranges<'_>, spectrum: &Node<'_, '_>) -> Option<(f64, f64)> {
+    let stated = spectrum.attribute("ColorSpecification").and_then(|id| ranges.get(id));
     let value = |name: &str| {
         let text = spectrum.attribute(name).or_else(|| stated.and_then(|n| n.attribute(name)));
         text.and_then(|t| t.parse::<f64>().ok())
@@ -113,6 +142,28 @@ mod tests {
         let lab = "<cc:ColorCIELab><cc:L>50</cc:L><cc:A>1</cc:A><cc:B>-2</cc:B></cc:ColorCIELab>";
         let reference = Reference::parse(&file(lab)).unwrap();
         assert_eq!(reference.patches[0].1, ReferenceColour::Lab(Lab { l: 50.0, a: 1.0, b: -2.0 }));
+    }
+
+    #[test]
+    fn elements_inside_elements_and_crowds_of_attributes_are_refused() {
+        let nested = |n: usize, inside: &str| {
+            file(&format!("{}{inside}{}", "<cc:Object>".repeat(n), "</cc:Object>".repeat(n)))
+        };
+        let deep = NotAReference::Deep.into();
+        assert_eq!(Reference::parse(&nested(300_000, "")), Err(deep));
+        let many = format!("<cc:Object {}/>", (0..300_000).map(|i| format!("a{i}='' ")).collect::<String>());
+        let crowded: ReferenceError = NotAReference::Crowded.into();
+        assert_eq!(Reference::parse(&file(&many)), Err(crowded.clone()));
+        let spaces = (0..300_000).map(|i| format!("<a xmlns:a{i}='b'>")).collect::<String>();
+        assert_eq!(Reference::parse(&file(&spaces)), Err(crowded));
+        // As many objects with as many specifications as the size allows, as deep as is allowed.
+        let lab = "<cc:ColorCIELab><cc:L>50</cc:L><cc:A>1</cc:A><cc:B>-2</cc:B></cc:ColorCIELab>";
+        let spectrum = "<cc:ReflectanceSpectrum ColorSpecification='x'/>";
+        assert!(Reference::parse(&nested(MAX_DEPTH - 8, &"<cc:Other/>".repeat(300_000))).is_err());
+        let broad = "<cc:Object/>".repeat(300_000) + lab;
+        assert!(Reference::parse(&file(&broad)).is_ok());
+        let broad = format!("<cc:Object>{spectrum}</cc:Object>").repeat(100_000);
+        assert!(Reference::parse(&file(&broad)).is_err());
     }
 
     #[test]

@@ -111,6 +111,12 @@ pub enum NotAReference {
     /// Broken XML.
     #[error(transparent)]
     Xml(roxmltree::Error),
+    /// XML with elements inside elements, deeper than in any CxF.
+    #[error("its XML is nested too deep")]
+    Deep,
+    /// XML with more attributes or name spaces than any CxF.
+    #[error("its XML has too many attributes")]
+    Crowded,
     /// XML of something else.
     #[error("its XML is `{element}`, not `CxF`")]
     OtherXml {

@@ -12,6 +12,7 @@ use darkroot_batch::{
 
 use crate::Common;
 use crate::picture::Picture;
+use crate::values;
 
 /// Which files, where to, and how much of the machine.
 #[derive(Debug, Clone, Args)]
@@ -82,7 +83,7 @@ pub(crate) struct Work {
     memory: Option<u64>,
 
     /// Longest time for one file, such as 90s or 10m
-    #[arg(long, value_name = "TIME", default_value = "10m", value_parser = time, help_heading = "Machine")]
+    #[arg(long, value_name = "TIME", default_value = "10m", value_parser = values::time, help_heading = "Machine")]
     timeout: Duration,
 
     /// Only part I of N of the files, or `auto` inside a Slurm array or a Kubernetes Indexed Job
@@ -189,11 +190,6 @@ fn size(text: &str) -> Result<u64, String> {
     let number: f64 = number.trim().parse().map_err(|_| wrong())?;
     let bytes = number * 1024f64.powi(power as i32);
     if bytes.is_finite() && bytes >= 1.0 { Ok(bytes as u64) } else { Err(wrong()) }
-}
-
-pub(super) fn time(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("`{text}` is no time: write 90s, 10m or 1h");
-    humantime::parse_duration(text).ok().filter(|t| !t.is_zero()).ok_or_else(wrong)
 }
 
 fn shard(text: &str) -> Result<Shard, String> {

@@ -7,8 +7,9 @@ use clap::Args;
 use darkroot_batch::{Batch, Notice, SettingsByFile, Stop, WatchOptions, Watched, watch};
 use serde_json::json;
 
-use super::options::{Work, store, time};
+use super::options::{Work, store};
 use super::shown::Shown;
+use crate::values;
 use crate::{Common, Outcome, interrupt};
 
 /// Develop what comes into folders, until told to stop
@@ -29,12 +30,12 @@ pub(crate) struct Watch {
     work: Work,
 
     /// A file is developed when its size and time of change have been the same for this long
-    #[arg(long, value_name = "TIME", default_value = "2s", value_parser = time, help_heading = "Watch")]
+    #[arg(long, value_name = "TIME", default_value = "2s", value_parser = values::time, help_heading = "Watch")]
     settle: Duration,
 
     /// Look this often, instead of when the system tells of changes; for shares that other machines write to
     /// [default: 5s on shares]
-    #[arg(long, value_name = "TIME", value_parser = time, help_heading = "Watch")]
+    #[arg(long, value_name = "TIME", value_parser = values::time, help_heading = "Watch")]
     poll: Option<Duration>,
 
     /// Report every event as a line of JSON on stdout

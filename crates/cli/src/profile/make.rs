@@ -10,6 +10,7 @@ use darkroot::{ChartRequest, Error, Settings, charts, light, make_profile, repor
 use darkroot_profile::Kind;
 use serde_json::json;
 
+use crate::deadline::Deadline;
 use crate::{Common, Outcome, hint};
 use darkroot::shown;
 
@@ -56,6 +57,9 @@ pub(crate) struct ShotArgs {
     /// Take rendered pictures (JPEG, PNG, TIFF) too
     #[arg(long)]
     allow_rendered: bool,
+
+    #[command(flatten)]
+    pub(crate) deadline: Deadline,
 }
 
 impl ShotArgs {
@@ -187,7 +191,9 @@ impl Make {
         if self.average && (0..request.shots.len()).all(lone) {
             bail!("`--average` is for several shots under one light; leave it out, or give more shots");
         }
-        let made = match make_profile(&request, &Settings::default()) {
+        let deadline = self.shot.deadline.times(self.shots.len());
+        let make = || make_profile(&request, &Settings::default());
+        let made = match deadline.over(first, 0, |_| (), make) {
             Ok(made) => made,
             Err(fault @ Error::SeveralShots { .. }) => bail!(fault),
             Err(fault) => {

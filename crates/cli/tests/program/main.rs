@@ -10,6 +10,7 @@ mod engines;
 mod export;
 mod formats;
 mod help;
+mod hostile;
 mod inspect;
 mod metadata;
 mod outputs;

@@ -5,12 +5,15 @@ use std::path::Path;
 
 use darkroot_colour::RgbSpace;
 use darkroot_photo::{Layout, Mosaic, Size};
+use image::ImageDecoder;
 
 use crate::fault::ChartError;
 use crate::{Error, files};
 
-/// Most pixels of a rendered picture.
-const MOST_PIXELS: u64 = 200_000_000;
+/// Bytes that a picture and the numbers that it becomes may take together: 200 megapixels of three bytes each.
+const MOST_BYTES: u64 = 200_000_000 * (3 + BYTES_OF_PIXEL);
+/// Bytes of a pixel of linear RGB.
+const BYTES_OF_PIXEL: u64 = 12;
 
 /// Whether a file is named like a rendered picture.
 pub(super) fn is_rendered(path: &Path) -> bool {
@@ -20,13 +23,21 @@ pub(super) fn is_rendered(path: &Path) -> bool {
 
 /// Reads a picture as linear RGB, 1 = white.
 pub(super) fn read(path: &Path) -> Result<Mosaic<f32>, Error> {
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(files::read(path)?))
+    let reader = image::ImageReader::new(std::io::Cursor::new(files::read(path)?))
         .with_guessed_format()
         .map_err(|e| Error::read(path, e))?;
+    let unreadable = |e| Error::chart(path, ChartError::Picture(e));
+    let mut decoder = reader.into_decoder().map_err(unreadable)?;
+    let (width, height) = decoder.dimensions();
+    // A picture of one bit becomes twelve bytes a pixel: what it becomes is counted, not what it is.
+    let bytes = u64::from(decoder.color_type().bytes_per_pixel()) + BYTES_OF_PIXEL;
+    if u64::from(width) * u64::from(height) > MOST_BYTES / bytes {
+        return Err(Error::chart(path, ChartError::Large { width, height }));
+    }
     let mut limits = image::Limits::default();
-    limits.max_alloc = Some(MOST_PIXELS * 8);
-    reader.limits(limits);
-    let picture = reader.decode().map_err(|e| Error::chart(path, ChartError::Picture(e)))?;
+    limits.max_alloc = Some(MOST_BYTES);
+    decoder.set_limits(limits).map_err(unreadable)?;
+    let picture = image::DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     let picture = picture.into_rgb32f();
     let size = Size { width: picture.width() as usize, height: picture.height() as usize };
     if size.area() == 0 {

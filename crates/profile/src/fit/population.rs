@@ -1,8 +1,9 @@
 //! What cameras have in common: statistics of their sensitivities, from which no single camera can be recovered.
 
 use darkroot_colour::Spectrum;
+use darkroot_colour::decomposition::symmetric_eigen;
 use darkroot_colour::spectrum::SAMPLES;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 
 use crate::spectra::Sensitivities;
 
@@ -87,7 +88,7 @@ impl Population {
 
 /// The directions of largest variance, each as long as its standard deviation, its largest value positive.
 fn components(covariance: DMatrix<f64>, most: usize) -> Vec<DVector<f64>> {
-    let eigen = SymmetricEigen::new(covariance);
+    let Some(eigen) = symmetric_eigen(covariance) else { return Vec::new() };
     let mut order: Vec<usize> = (0..SAMPLES).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     let component = |i: usize| {

@@ -69,11 +69,17 @@ fn a_file_that_is_too_large_for_the_memory_is_given_up() {
 /// Runs a batch with the program in place of `sh -c SCRIPT` as worker; the outcome of each file.
 #[cfg(unix)]
 fn with_worker(desk: &Desk, script: &str) -> Vec<(String, Result<(), String>)> {
+    with_worker_of(desk, script, 2)
+}
+
+/// As [`with_worker`], with so many files at once.
+#[cfg(unix)]
+fn with_worker_of(desk: &Desk, script: &str, jobs: usize) -> Vec<(String, Result<(), String>)> {
     let program = env!("CARGO_BIN_EXE_darkroot");
     let options = PlanOptions::into(&desk.path("out"));
     let mut crew =
         CrewOptions::new("sh".into(), vec!["-c".into(), script.into(), "sh".into(), program.into()]);
-    (crew.jobs, crew.threads) = (2, 2);
+    (crew.jobs, crew.threads) = (jobs, jobs);
     let search = Search { inputs: vec![desk.path("in").to_str().unwrap().into()], ..Search::default() };
     let mut settings = SettingsByFile::new(Layers::new(None, Layer::flags([]).unwrap(), true).unwrap());
     let mut run = Batch::open(&options, crew, ProfileStore::builtin()).unwrap();
@@ -125,6 +131,105 @@ fn a_worker_that_is_ended_by_accident_costs_nothing() {
     assert!(mark.is_dir());
     assert_eq!(outcomes.len(), 4);
     assert!(outcomes.iter().all(|(_, outcome)| outcome.is_ok()), "{outcomes:?}");
+}
+
+/// What a worker's pipe does to its answer that a file is developed: the picture is in its place by then.
+#[cfg(unix)]
+fn when_developed(act: &str) -> String {
+    format!(
+        r#""$1" worker | while read -r line; do
+            case $line in *'"developed"'*) {act};; esac
+            printf '%s\n' "$line"
+        done"#
+    )
+}
+
+#[cfg(unix)]
+#[test]
+fn a_worker_that_dies_between_its_picture_and_its_answer_costs_nothing() {
+    let desk = Desk::with_tree();
+    let mark = desk.path("killed-once");
+    let script = when_developed(&format!("if mkdir '{}' 2>/dev/null; then kill -KILL 0; fi", mark.display()));
+    let outcomes = with_worker(&desk, &script);
+    assert!(mark.is_dir());
+    assert_eq!(outcomes.len(), 4);
+    assert!(outcomes.iter().all(|(_, outcome)| outcome.is_ok()), "{outcomes:?}");
+    assert_eq!(summary(&desk.batch(&["--json"])), [0, 4, 0, 0]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_picture_whose_workers_died_is_never_disowned() {
+    // Each worker dies at that point; or the first does and the second fails in an ordinary way.
+    let failed = r#"printf '%s\n' '{"failed":{"kind":"file","error":"an ordinary fault"}}'; continue"#;
+    let marks = tempfile::tempdir().unwrap();
+    let mark = marks.path().join("mark");
+    let first_only = format!("if mkdir '{}' 2>/dev/null; then kill -KILL 0; fi; {failed}", mark.display());
+    for act in ["kill -KILL 0", &first_only] {
+        let desk = Desk::new();
+        desk.put("in/a.dng", small_dng());
+        // A fault of a file that was written just now is tried again for a while.
+        let file = std::fs::File::options().append(true).open(desk.path("in/a.dng")).unwrap();
+        file.set_modified(std::time::SystemTime::now() - Duration::from_secs(3600)).unwrap();
+        let outcomes = with_worker(&desk, &when_developed(act));
+        assert!(matches!(&outcomes[..], [(_, Err(_))]), "{outcomes:?}");
+        assert_eq!(desk.outputs(), ["a.jpg"]);
+        let run = desk.batch(&["--json"]);
+        assert_eq!((run.code, summary(&run)), (0, [1, 0, 0, 0]), "{}", run.err);
+        assert_eq!(summary(&desk.batch(&["--json"])), [0, 1, 0, 0]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_foreign_picture_that_comes_after_the_plan_is_neither_replaced_nor_claimed() {
+    let desk = Desk::new();
+    for name in ["a", "b", "c"] {
+        desk.put(&format!("in/{name}.dng"), small_dng());
+    }
+    // When the first file is handed out, a picture by another hand appears at the place of the last, whose worker would
+    // die before it could see that.
+    let place = desk.path("out/c.jpg");
+    let script = format!(
+        r#"while read -r line; do
+            echo foreign >'{}'
+            case $line in *c.dng*) kill -KILL 0;; esac
+            printf '%s\n' "$line"
+        done | "$1" worker"#,
+        place.display()
+    );
+    let outcomes = with_worker_of(&desk, &script, 1);
+    let [(_, Ok(())), (_, Ok(())), (_, Err(error))] = &outcomes[..] else { panic!("{outcomes:?}") };
+    assert!(error.contains("exists already"), "{error}");
+    assert_eq!(desk.read("out/c.jpg"), b"foreign\n");
+    let run = desk.batch(&["--json"]);
+    assert_eq!((run.code, summary(&run)), (1, [0, 2, 1, 0]), "{}", run.err);
+    assert_eq!(desk.read("out/c.jpg"), b"foreign\n");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_worker_has_little_memory_before_it_reads_the_head_of_a_file() {
+    let desk = Desk::new();
+    desk.put("in/a.dng", small_dng());
+    // When it says what a file needs it has read the head, and was not yet told to go on.
+    let script = format!(
+        r#"cd '{}'
+        sh -c 'echo $$ >pid; exec "$1" worker' sh "$1" | while read -r line; do
+            case $line in *'"needs"'*) grep 'Max data size' "/proc/$(cat pid)/limits" >>limits;; esac
+            printf '%s\n' "$line"
+        done"#,
+        desk.folder.path().display()
+    );
+    let outcomes = with_worker_of(&desk, &script, 1);
+    assert!(matches!(&outcomes[..], [(_, Ok(()))]), "{outcomes:?}");
+    let limits = String::from_utf8(desk.read("limits")).unwrap();
+    let most = (512 << 20) + 4 * small_dng().len() as u64;
+    for line in limits.lines() {
+        let limit: u64 = line.split_whitespace().nth(3).unwrap().parse().unwrap_or(u64::MAX);
+        assert!(limit <= most, "{line}");
+    }
+    assert!(!limits.is_empty());
 }
 
 #[cfg(unix)]

@@ -96,3 +96,20 @@ fn blur_is_measured_warned_of_and_refused() {
         assert_eq!(verdict == "failed", plain.err.contains("add `--accept`"), "{}", plain.err);
     }
 }
+
+#[test]
+fn a_reference_with_a_patch_darker_than_numbers_reach_is_judged_and_not_pondered_for_ever() {
+    let desk = desk(&daylight());
+    let mut rows = String::new();
+    for (i, reflectance) in darkroot_simulate::chart::reflectances().iter().enumerate() {
+        let colour = reflectance.reflected_xyz(&light("D50")).scaled(100.0);
+        // So little light that a share of it is infinite.
+        let y = if i == 5 { 1e-320 } else { colour.y };
+        let row = char::from(b'A' + i as u8 / 6);
+        rows += &format!("{row}{} {:.4} {y:e} {:.4}\n", 1 + i % 6, colour.x, colour.z);
+    }
+    let names = "BEGIN_DATA_FORMAT\nSAMPLE_LOC XYZ_X XYZ_Y XYZ_Z\nEND_DATA_FORMAT";
+    desk.put("dark.cie", format!("CTI2\n\n{names}\n\nBEGIN_DATA\n{rows}END_DATA\n"));
+    let run = profile(&desk, &["-o", "p.toml", "--reference", "dark.cie"]);
+    assert!(run.code == 0 && run.err.contains("dE2000"), "{}", run.err);
+}
