@@ -87,7 +87,7 @@ impl Verify {
             bail!("give a profile and a shot of a chart");
         };
         let Found { profile, place } = store().choose(profile)?;
-        let request = self.shot.request(std::slice::from_ref(file), &[], None, "")?;
+        let request = self.shot.request(&[], &[], None, "")?;
         let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
         let judge = || verify(&profile, file, light.as_ref(), &request, &Settings::default());
         let found = match self.shot.deadline.over(file, 0, |_| (), judge) {

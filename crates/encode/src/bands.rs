@@ -36,6 +36,8 @@ pub fn write_in_bands<T: Sample, E: From<Error>>(
     out: &mut dyn Out,
     make: impl FnOnce(usize, &TakeBand<'_, T>) -> Result<(), E>,
 ) -> Result<(), E> {
+    // Stands for what `make` says, of which encoders know nothing. No output fails like this: such calls are made again.
+    const MAKING_FAILED: io::ErrorKind = io::ErrorKind::Interrupted;
     let (mut make, mut failure) = (Some(make), None);
     let written = write_made(outline, format, options, metadata, out, &mut |rows, take| match make
         .take()
@@ -43,13 +45,14 @@ pub fn write_in_bands<T: Sample, E: From<Error>>(
     {
         Some(Err(e)) => {
             failure = Some(e);
-            Err(Error::Io(io::ErrorKind::Other.into()))
+            Err(Error::Io(MAKING_FAILED.into()))
         }
         _ => Ok(()),
     });
-    match failure {
-        Some(e) => Err(e),
-        None => Ok(written?),
+    match (written, failure) {
+        (Err(Error::Io(e)), Some(failure)) if e.kind() == MAKING_FAILED => Err(failure),
+        // An output that failed is why `make` did.
+        (written, _) => Ok(written?),
     }
 }
 
