@@ -122,8 +122,11 @@ def darkroot(program, pictures):
     found = []
     for picture in pictures:
         start = time.perf_counter()
-        run = subprocess.run([program, "chart", "--json", picture], capture_output=True, text=True, check=True)
+        run = subprocess.run([program, "chart", "--json", picture], capture_output=True, text=True)
         seconds = time.perf_counter() - start
+        # 1 is a picture without a chart, or one that cannot be read: then nothing is printed.
+        if run.returncode not in (0, 1) or not run.stdout:
+            raise SystemExit(f"{picture}: {run.stderr}")
         charts = json.loads(run.stdout)["charts"]
         for chart in charts:
             # The 24 patches of the classic come on cards of many sizes.
