@@ -7,8 +7,7 @@ use std::borrow::Cow;
 use std::io::Write;
 
 use darkroot_photo::Metadata;
-use flate2::Compression;
-use flate2::write::DeflateEncoder;
+use flate2::{Compress, Compression, FlushCompress, Status};
 use png::{BitDepth, ColorType, Encoder, EncodingError, Info, Writer, chunk};
 
 use crate::bands::{self, MakeBands, Outline, Sink};
@@ -65,15 +64,26 @@ struct Deflated {
 
 /// Filters and deflates a band.
 fn deflated<T: Sample>(samples: &[T], width: usize, last: bool) -> std::io::Result<Deflated> {
+    // What an empty block of a sync flush ends with.
+    const FLUSHED: [u8; 4] = [0, 0, 0xff, 0xff];
     let filtered = filter::band(samples, width);
-    let mut deflate = DeflateEncoder::new(Vec::with_capacity(filtered.len()), Compression::new(LEVEL));
-    deflate.write_all(&filtered)?;
-    let bytes = if last {
-        deflate.finish()?
-    } else {
-        deflate.flush()?;
-        std::mem::take(deflate.get_mut())
-    };
+    let mut deflate = Compress::new(Compression::new(LEVEL), false);
+    let mut bytes = Vec::with_capacity(filtered.len());
+    let flush = if last { FlushCompress::Finish } else { FlushCompress::Sync };
+    // One flush does not always bring out all: flate2's writer stops as soon as there is room left, and then something is lost.
+    loop {
+        let (taken, there) = (deflate.total_in() as usize, bytes.len());
+        let status = deflate.compress_vec(&filtered[taken..], &mut bytes, flush)?;
+        let all_taken = deflate.total_in() as usize == filtered.len();
+        let ended = if last { status == Status::StreamEnd } else { all_taken && bytes.ends_with(&FLUSHED) };
+        if ended {
+            break;
+        }
+        if deflate.total_in() as usize == taken && bytes.len() == there && bytes.len() < bytes.capacity() {
+            return Err(std::io::Error::other("deflate does not go on"));
+        }
+        bytes.reserve(filtered.len() / 64 + 4096);
+    }
     let checksum = adler2::adler32_slice(&filtered);
     Ok(Deflated { bytes, checksum, length: filtered.len() })
 }
@@ -122,8 +132,32 @@ mod tests {
         b << 16 | a
     }
 
-    /// Readers in Rust do not look at the checksum, others do. It is of more than a megabyte a band, where a library that
-    /// counts in vectors was wrong.
+    /// Bands of photographs of many lengths: each must be there to its last byte before the next one begins.
+    #[test]
+    fn every_band_ends_at_a_whole_byte_with_nothing_left_behind() {
+        let mut state = 1u32;
+        let mut noise = |limit: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % limit
+        };
+        for width in (300..2000).step_by(17) {
+            let grain = 1 + width as u32 % 23;
+            let samples: Vec<u8> =
+                (0..3 * width * 48).map(|i| (i / 700 % 200 + noise(grain) as usize) as u8).collect();
+            let filtered = filter::band(&samples, width);
+            for last in [false, true] {
+                let band = deflated(&samples, width, last).unwrap();
+                assert_eq!(band.length, filtered.len());
+                let mut back = Vec::with_capacity(filtered.len() + 1);
+                let mut inflate = flate2::Decompress::new(false);
+                inflate.decompress_vec(&band.bytes, &mut back, flate2::FlushDecompress::Sync).unwrap();
+                assert!(back == filtered, "{width} {last}: {} of {} bytes", back.len(), filtered.len());
+                assert!(last || band.bytes.ends_with(&[0, 0, 0xff, 0xff]), "{width}");
+            }
+        }
+    }
+
+    /// Readers in Rust do not look at the checksum, others do.
     #[test]
     fn the_stream_ends_with_the_checksum_of_all_bands() {
         let picture = crate::testing::picture(4000, 300, 8, PictureSpace::Rgb(RgbSpace::SRGB));
