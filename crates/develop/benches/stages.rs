@@ -17,44 +17,11 @@ use darkroot_develop::transfer::Encoder;
 use darkroot_develop::{
     Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer,
 };
-use darkroot_photo::{
-    BlackLevel, CameraSpace, Capture, Cfa, Counts, Display, Layout, Mosaic, Rgb, Size, WhiteLevel,
-};
-use darkroot_profile::{Order, PlaneModel, RootPolynomial};
+use darkroot_photo::{CameraSpace, Counts, Display, Rgb};
+use darkroot_profile::Order;
 
-const SIZE: Size = Size { width: 1024, height: 512 };
-const BORDER: usize = 16;
-
-/// Light with smooth shading, edges and noise.
-fn light(i: usize, width: usize) -> f32 {
-    let (x, y) = (i % width, i / width);
-    let edge = if (x / 37 + y / 23) % 3 == 0 { 0.5 } else { 0.1 };
-    edge + 0.2 * (x as f32 / width as f32) + ((x * 7919 + y * 104_729) % 1000) as f32 * 2e-5
-}
-
-fn mosaic(letters: &str) -> Mosaic<f32> {
-    let size = Size { width: SIZE.width + 2 * BORDER, height: SIZE.height + 2 * BORDER };
-    let samples = (0..size.area()).map(|i| light(i, size.width)).collect();
-    Mosaic { size, layout: Layout::Cfa(Cfa::parse(letters).expect("a square array")), samples }
-}
-
-fn planes<S>() -> Rgb<S> {
-    let plane = |k: f32| (0..SIZE.area()).map(|i| light(i, SIZE.width) * k).collect();
-    Rgb::from_planes(SIZE, [plane(0.8), plane(1.0), plane(0.5)]).expect("planes of that size")
-}
-
-fn capture() -> Capture {
-    let samples = (0..SIZE.area()).map(|i| (light(i, SIZE.width) * 15000.0) as u16).collect();
-    let layout = Layout::Cfa(Cfa::parse("RGGB").expect("a square array"));
-    let counts = Counts::U16(Mosaic { size: SIZE, layout, samples });
-    Capture { black: BlackLevel::uniform(512.0), white: WhiteLevel([16383.0; 3]), ..Capture::bare(counts) }
-}
-
-fn model(order: Order) -> PlaneModel {
-    let terms = order.terms().len();
-    let coefficients = (0..terms).map(|i| [0.5, 0.4, 0.3].map(|c| c / (1.0 + i as f64))).collect();
-    PlaneModel::new(&RootPolynomial::new(order, coefficients).expect("a coefficient for each term").into())
-}
+mod fixture;
+use fixture::{BORDER, SIZE, X_TRANS, capture, model, mosaic, planes};
 
 fn stages(c: &mut Criterion) {
     let mut group = c.benchmark_group("stages");
@@ -97,7 +64,7 @@ fn stages(c: &mut Criterion) {
     for (name, letters, wanted) in [
         ("demosaic Bayer", "RGGB", Demosaic::Best),
         ("demosaic Bayer, bilinear", "RGGB", Demosaic::Bilinear),
-        ("demosaic X-Trans", "GBGGRG RGRBGB GBGGRG GRGGBG BGBRGR GRGGBG", Demosaic::Best),
+        ("demosaic X-Trans", X_TRANS, Demosaic::Best),
     ] {
         let mosaic = mosaic(letters);
         let Some(method) = Method::of(&mosaic.layout, wanted) else { continue };

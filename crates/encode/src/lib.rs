@@ -88,17 +88,16 @@ pub fn write(
     format.accepts(&picture.space)?;
     options.check()?;
     let frame = format::Frame::of(picture, format)?;
-    if format.takes_bands() {
-        return InBands { picture, format, options, metadata, out }.with_all(&picture.samples);
+    let about = exif::of_picture(metadata, picture.size, &picture.space);
+    match format {
+        Format::Jpeg | Format::Png | Format::Tiff => {
+            InBands { picture, format, options, metadata, out }.with_all(&picture.samples)
+        }
+        Format::Webp => output::buffered(out, |out| webp::write(&frame, &about, out)),
+        Format::Avif => output::buffered(out, |out| avif::write(&frame, options, &about, out)),
+        Format::Exr => output::buffered(out, |out| exr::write(&frame, &about, out)),
+        Format::Jxl => output::buffered(out, |out| jxl::write(&frame, &about, out)),
     }
-    let metadata = exif::of_picture(metadata, picture.size, &picture.space);
-    output::buffered(out, |out| match format {
-        Format::Webp => webp::write(&frame, &metadata, out),
-        Format::Avif => avif::write(&frame, options, &metadata, out),
-        Format::Exr => exr::write(&frame, &metadata, out),
-        Format::Jxl => jxl::write(&frame, &metadata, out),
-        Format::Jpeg | Format::Png | Format::Tiff => Ok(()),
-    })
 }
 
 /// Bands of a whole picture, coded by all threads.
