@@ -44,10 +44,9 @@ pub(crate) fn compare(
     light: &LightSource,
 ) -> Vec<(Compared, Option<Fit>)> {
     let statistics = Population::builtin().zip(VirtualSet::builtin());
-    let prior = statistics
-        .as_ref()
-        .zip(light.spectrum.as_ref())
-        .and_then(|((population, set), spectrum)| Some((Prior::under(population, spectrum)?, set, spectrum)));
+    let prior = statistics.as_ref().zip(light.spectrum.as_ref()).and_then(|((population, set), spectrum)| {
+        Some((Prior::under(population, spectrum)?, *set, spectrum))
+    });
     let background = match (spectra, &prior) {
         (Some(reflectances), Some((prior, set, light))) => {
             Background::Reflectances(Knowledge { reflectances, light, prior, set })

@@ -33,7 +33,9 @@ pub fn judge(
     light: &LightSource,
     patches: &[MeasuredPatch],
 ) -> Result<Judgement, CalibrateError> {
-    let model = profile.model_for(light.light.kelvin());
+    let known = profile.known_camera().zip(light.spectrum.as_ref());
+    let model = known.and_then(|(camera, spectrum)| camera.model_under(spectrum));
+    let model = model.unwrap_or_else(|| profile.model_for(light.light.xy));
     let (patches, errors) = by_model(light, patches, &model)?;
     let pairs: Vec<_> = patches
         .iter()

@@ -3,6 +3,7 @@
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::difference::de2000;
 use darkroot_colour::{Spectrum, Vector3, Xyz, white};
+use darkroot_profile::camera::{Judged, KnownCamera};
 use darkroot_profile::fit::{Background, Fit, Samples, fit_knowing};
 use darkroot_profile::{Calibration, Errors, Figures, Kind, Model, Patch, Sensitivities};
 
@@ -38,6 +39,25 @@ pub fn calibrate(
     }
     let names: Vec<&str> = training.iter().map(|(n, _)| n.as_str()).collect();
     Ok(calibration(light, kind, &fit, figures, &samples, &names))
+}
+
+/// How far the colours of a camera that is known by its sensitivities are off under a light, on surfaces that took no part.
+///
+/// # Errors
+/// A light without a spectrum, a channel that sees nothing of it.
+pub fn judge(
+    sensitivities: &Sensitivities,
+    known: &KnownCamera,
+    light: &LightSource,
+    held_out: &Surfaces,
+) -> Result<Judged, CalibrateError> {
+    let spectrum = light.spectrum.as_ref().ok_or(CalibrateError::NoSpectrum)?;
+    let effective = sensitivities.under(spectrum).ok_or(CalibrateError::BlindChannel)?;
+    let model = known.model_under(spectrum).ok_or(CalibrateError::BlindChannel)?;
+    let unseen: Vec<Spectrum> = held_out.iter().map(|(_, s)| s.clone()).collect();
+    let samples = effective.render(&unseen, spectrum)?;
+    let under_light = model.then(&bradford(white::D50, samples.white()));
+    Ok(Judged { light: light.light.name.clone(), errors: errors(&under_light, &samples).rounded() })
 }
 
 /// Errors of a model over colours.

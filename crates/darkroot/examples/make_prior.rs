@@ -1,18 +1,21 @@
 //! Makes the statistics of the spectral prior that are built into the program (crates/profile/data) from published
 //! spectra: `cargo run --release -p darkroot --example make_prior -- SPECTRA crates/profile/data`.
 //!
-//! Mean and first principal components of the sensitivities of eleven cameras, and representative reflectances
-//! (means of clusters, reduced to their first principal components). The spectra themselves are not in this
-//! repository.
+//! Mean and first principal components of the sensitivities of eleven cameras, representative reflectances (means of
+//! clusters, reduced to their first principal components), and how published matrices differ from computed ones. The
+//! spectra themselves are not in this repository. The last needs the profiles of `profiles/`, and these the program: so
+//! `profiles/make.sh` comes first.
 
 use std::path::{Path, PathBuf};
 
-use darkroot::spectra;
-use darkroot_colour::Spectrum;
-use darkroot_profile::fit::population::{Population, format_reflectances, smoothed};
+use darkroot::evaluate::published;
+use darkroot::{ProfileStore, spectra};
+use darkroot_colour::{Illuminant, Spectrum};
+use darkroot_profile::camera::{Difference, Regression, families, offsets};
+use darkroot_profile::fit::population::{Population, format_reflectances, parse_reflectances, smoothed};
 use darkroot_profile::fit::representatives::clusters;
 
-/// Apache-2.0, from rawtoaces.
+/// Apache-2.0, from rawtoaces: the cameras of the prior for charts.
 const CAMERAS: [&str; 11] = [
     "arri_d21",
     "canon_eos_5d_mark_ii",
@@ -26,17 +29,15 @@ const CAMERAS: [&str; 11] = [
     "sony_ilce-7rm2",
     "sony_ilce-7sm2",
 ];
-/// Apache-2.0 (rawtoaces) and MIT (ISETCam).
-const REFLECTANCES: [&str; 14] = [
+/// Apache-2.0 (rawtoaces) and MIT (ISETCam). Two charts of ISETCam, Esser's and the SG, judge what ships and take no part.
+const REFLECTANCES: [&str; 12] = [
     "rawtoaces190",
     "iset_africanamerican_vhrel",
     "iset_caucasian_vhrel",
     "iset_clothes_vhrel",
     "iset_dupontpaintchip_vhrel",
     "iset_eastindian_vhrel",
-    "iset_esserchart",
     "iset_food_vhrel",
-    "iset_gretagdigitalcolorsg",
     "iset_hair_vhrel",
     "iset_macbethchart",
     "iset_munsellsamples_vhrel",
@@ -55,7 +56,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err("give the folder of spectra and the folder to write to".into());
     };
     std::fs::write(to.join("sensitivities.csv"), sensitivities(from)?)?;
-    std::fs::write(to.join("reflectances.csv"), reflectances(from)?)?;
+    let representative = reflectances(from)?;
+    std::fs::write(to.join("reflectances.csv"), format_reflectances(&representative))?;
+    let written = parse_reflectances(&format_reflectances(&representative)).ok_or("no reflectances")?;
+    std::fs::write(to.join("offsets.csv"), offsets(from, &written)?)?;
     Ok(())
 }
 
@@ -68,7 +72,7 @@ fn sensitivities(from: &Path) -> Result<String, Box<dyn std::error::Error>> {
     Ok(population.format())
 }
 
-fn reflectances(from: &Path) -> Result<String, Box<dyn std::error::Error>> {
+fn reflectances(from: &Path) -> Result<Vec<(Spectrum, f64)>, Box<dyn std::error::Error>> {
     let mut all: Vec<Spectrum> = Vec::new();
     for name in REFLECTANCES {
         all.extend(spectra::read(&from.join(format!("refl_{name}.csv")))?.reflectances());
@@ -76,7 +80,24 @@ fn reflectances(from: &Path) -> Result<String, Box<dyn std::error::Error>> {
     let clusters = clusters(&all, CLUSTERS);
     let means: Vec<Spectrum> = clusters.iter().map(|c| c.mean.clone()).collect();
     let weights = clusters.iter().map(|c| (c.members.len() as f64).sqrt());
-    let representative: Vec<(Spectrum, f64)> =
-        smoothed(&means, &all, SHAPES).into_iter().zip(weights).collect();
-    Ok(format_reflectances(&representative))
+    Ok(smoothed(&means, &all, SHAPES).into_iter().zip(weights).collect())
+}
+
+/// How the published D65 matrices of the cameras whose sensitivities are built in differ from those that their
+/// sensitivities give through the representative reflectances.
+fn offsets(from: &Path, surfaces: &[(Spectrum, f64)]) -> Result<String, Box<dyn std::error::Error>> {
+    let published = published::read(&from.join("published_matrices_A_D65.csv"))?;
+    let light = Illuminant::by_name("D65").ok_or("no D65")?.spectrum();
+    let regression = Regression::under(&light, surfaces).ok_or("the reflectances determine no matrix")?;
+    let mut known = Vec::new();
+    for found in ProfileStore::builtin().all() {
+        let (Some(camera), Some(matrix)) =
+            (found.profile.known_camera(), published::of(&published, found.profile.camera()))
+        else {
+            eprintln!("{}: no published matrix", found.profile.camera().name());
+            continue;
+        };
+        known.extend(Difference::of(&regression, camera.sensitivities(), &matrix));
+    }
+    Ok(offsets::format(&families(&known)))
 }

@@ -115,6 +115,20 @@ pub enum Error {
         /// What is wrong.
         source: CalibrateError,
     },
+    /// A camera that no decoder lists with a matrix.
+    #[error(
+        "`{}` is neither a file nor a camera with a published matrix; name a raw file of the camera",
+        shown(text)
+    )]
+    NotListed {
+        /// As it was asked for.
+        text: String,
+    },
+    /// Too little is known for an estimate.
+    #[error(
+        "a camera cannot be estimated from its matrix: too few cameras or surfaces are left in the prior; give more"
+    )]
+    Prior,
     /// A profile for no light at all.
     #[error("a profile needs a light")]
     NoLight,

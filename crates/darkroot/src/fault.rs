@@ -163,6 +163,20 @@ pub enum SpectraError {
         /// Spectra that there are.
         count: usize,
     },
+    /// Sensitivities of no camera.
+    #[error("has a channel that sees nothing; give three sensitivities to light between 380 and 780 nm")]
+    Blind,
+    /// A column that a table of matrices needs.
+    #[error("has no column `{}`; a table of matrices has make, model, and D65_00 to D65_22", quoted(name))]
+    NoColumn {
+        /// Its name.
+        name: String,
+    },
+    /// Cameras without published matrices.
+    #[error(
+        "and the files with it: fewer than two of these cameras have a published matrix; name files cam_SOURCE_MAKE_MODEL.csv"
+    )]
+    NoMatrix,
     /// A light that the file does not have.
     #[error("has no light `{}`; it has {}", quoted(name), list(names))]
     NoLight {

@@ -41,6 +41,9 @@ pub use spectra::SpectraFile;
 pub mod light;
 pub use light::LightSource;
 
+pub mod estimate;
+pub use estimate::{Estimated, estimate, estimate_named};
+
 pub mod from_spectra;
 pub use from_spectra::{FromSpectra, from_spectra};
 
@@ -89,7 +92,7 @@ mod pipe;
 
 pub use darkroot_develop::{Analysis, Cancel, Cancelled, Plan, Recipe, Scale, View};
 pub use darkroot_encode::{ChromaSubsampling, Format, Options as EncodeOptions};
-pub use darkroot_raw::{Decoder, Limits};
+pub use darkroot_raw::{Decoder, Limits, Listed, cameras};
 
 /// Version of Darkroot, as outputs carry it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

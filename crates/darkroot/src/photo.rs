@@ -13,19 +13,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use std::sync::Arc;
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
 
 use darkroot_develop::{Analysis, Plan};
 use darkroot_photo::Capture;
 use darkroot_raw::{Decoder, Limits};
 
-use crate::settings::{Settings, SettingsError};
+use crate::estimate::Estimated;
+use crate::settings::{ProfileChoice, Settings, SettingsError};
 use crate::store::{ChosenProfile, ProfileStore};
 
 /// A decoded raw file.
 #[derive(Debug, Clone)]
 pub struct Photo {
     capture: Arc<Capture>,
+    /// The camera as far as its matrix tells; made when it is first wanted.
+    estimated: Arc<OnceLock<Option<Estimated>>>,
 }
 
 /// Why there is no plan for a photograph.
@@ -93,21 +97,35 @@ impl Photo {
         Ok(darkroot_develop::plan(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), &recipe)?)
     }
 
-    /// The profile that gives the colours, with the place it is from; `None` where the file's own matrices do.
+    /// The profile that gives the colours, with the place it is from: where the store has none for the camera, what its
+    /// matrix tells of it ([`Photo::estimated`]). `None` where the file's own matrices serve as they are.
     ///
     /// # Errors
     /// A file that cannot be read, is no profile, or is for another camera.
     pub fn profile<'a>(
-        &self,
+        &'a self,
         store: &'a ProfileStore,
         settings: &Settings,
     ) -> Result<Option<ChosenProfile<'a>>, Box<crate::Error>> {
-        store.for_camera(&self.capture.camera, &settings.profile).map_err(Box::new)
+        let found = store.for_camera(&self.capture.camera, &settings.profile).map_err(Box::new)?;
+        if found.is_some() || settings.profile != ProfileChoice::Automatic {
+            return Ok(found);
+        }
+        Ok(self.estimated().map(|estimated| ChosenProfile {
+            profile: Cow::Borrowed(&estimated.profile),
+            place: Cow::Owned(estimated.words()),
+            estimated: true,
+        }))
+    }
+
+    /// The camera that the file's matrix makes most probable ([`crate::estimate()`]).
+    pub fn estimated(&self) -> Option<&Estimated> {
+        self.estimated.get_or_init(|| crate::estimate(&self.capture)).as_ref()
     }
 }
 
 impl From<Capture> for Photo {
     fn from(capture: Capture) -> Self {
-        Self { capture: Arc::new(capture) }
+        Self { capture: Arc::new(capture), estimated: Arc::default() }
     }
 }

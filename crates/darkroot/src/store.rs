@@ -29,8 +29,10 @@ pub struct Found {
 pub struct ChosenProfile<'a> {
     /// The profile.
     pub profile: Cow<'a, Profile>,
-    /// A path, or "built in".
+    /// A path, "built in", or what it was estimated from.
     pub place: Cow<'a, str>,
+    /// Whether it was estimated, because there is no other.
+    pub estimated: bool,
 }
 
 /// Profiles by camera.
@@ -144,6 +146,7 @@ impl ProfileStore {
             ProfileChoice::Automatic => Ok(self.find(camera).map(|found| ChosenProfile {
                 profile: Cow::Borrowed(&found.profile),
                 place: Cow::Borrowed(&found.place),
+                estimated: false,
             })),
             ProfileChoice::File(path) => {
                 let Found { profile, place } = self.named(path)?;
@@ -155,7 +158,11 @@ impl ProfileStore {
                         camera: camera.name(),
                     });
                 }
-                Ok(Some(ChosenProfile { profile: Cow::Owned(profile), place: Cow::Owned(place) }))
+                Ok(Some(ChosenProfile {
+                    profile: Cow::Owned(profile),
+                    place: Cow::Owned(place),
+                    estimated: false,
+                }))
             }
         }
     }
@@ -166,14 +173,21 @@ impl ProfileStore {
     }
 
     fn with_builtin(mut self) -> Self {
-        for (name, text) in BUILTIN {
-            match darkroot_profile::file::parse(text) {
+        for profile in builtin() {
+            match profile {
                 Ok(profile) => self.entries.push(Entry::of(profile, "built in".to_owned())),
-                Err(fault) => self.faults.push(format!("built-in profile {name}: {fault}")),
+                Err(fault) => self.faults.push(fault),
             }
         }
         self
     }
+}
+
+/// The profiles built into the program; what is wrong with one, in words.
+pub(crate) fn builtin() -> impl Iterator<Item = Result<Profile, String>> {
+    BUILTIN.iter().map(|(name, text)| {
+        darkroot_profile::file::parse(text).map_err(|fault| format!("built-in profile {name}: {fault}"))
+    })
 }
 
 /// Whether a profile is for a camera, by any of the camera's names.

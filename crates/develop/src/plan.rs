@@ -22,9 +22,6 @@ use crate::transfer::Encoder;
 use crate::view::Scale;
 use crate::{auto_exposure, neutral};
 
-/// Light that a profile is used for where the light's temperature is not known, K.
-const ASSUMED_KELVIN: f64 = 5003.0;
-
 /// What the colours of a picture were computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colours {
@@ -163,13 +160,13 @@ fn colours(
     }
     match (profile, analysis.matrix()) {
         (Some(profile), _) => {
-            let kelvin = white.map_or(ASSUMED_KELVIN, |xy| Temperature::of(xy).kelvin);
-            if white.is_none() && profile.calibrations().len() > 1 {
-                notes.push(format!(
-                    "the light's temperature is not known; the profile was used as for {ASSUMED_KELVIN} K"
-                ));
+            if white.is_none() && profile.has_several_lights() {
+                notes.push(
+                    "the white of the light is not known; the profile was used as for daylight of 5000 K"
+                        .to_owned(),
+                );
             }
-            (Colours::Profile, profile.model_for(kelvin))
+            (Colours::Profile, profile.model_for(white.unwrap_or(white::D50_XY)))
         }
         (None, Some(matrix)) => {
             let white = white.unwrap_or(white::D50_XY);

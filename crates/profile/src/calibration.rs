@@ -1,8 +1,9 @@
-//! A camera's profile: one model per light, and which one serves which white.
+//! A camera's profile: one model per light, or the camera itself; and which model serves which white.
 
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Xy, Xyz};
 
+use crate::camera::KnownCamera;
 use crate::{Figures, Kind, Model};
 
 /// The camera that a profile is for.
@@ -111,16 +112,39 @@ pub struct Origin {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     camera: ProfileCamera,
-    /// At least one, by falling temperature of the light (rising mired).
-    calibrations: Vec<Calibration>,
+    knowledge: Knowledge,
     origin: Origin,
+}
+
+/// What a profile knows.
+#[derive(Debug, Clone, PartialEq)]
+enum Knowledge {
+    /// Models for some lights: at least one, by falling temperature of the light (rising mired).
+    Calibrations(Vec<Calibration>),
+    /// How the camera sees, from which the model for any light follows.
+    Camera(Box<KnownCamera>),
 }
 
 impl Profile {
     /// A profile of these calibrations. `None` when there are none.
     pub fn new(camera: ProfileCamera, mut calibrations: Vec<Calibration>, origin: Origin) -> Option<Self> {
         calibrations.sort_by(|a, b| b.light.kelvin().total_cmp(&a.light.kelvin()));
-        (!calibrations.is_empty()).then_some(Self { camera, calibrations, origin })
+        let knowledge = Knowledge::Calibrations(calibrations);
+        let some = matches!(&knowledge, Knowledge::Calibrations(all) if !all.is_empty());
+        some.then_some(Self { camera, knowledge, origin })
+    }
+
+    /// A profile that is a camera: the model for the light of each photograph follows from its sensitivities.
+    pub fn of_camera(camera: ProfileCamera, known: KnownCamera, origin: Origin) -> Self {
+        Self { camera, knowledge: Knowledge::Camera(Box::new(known)), origin }
+    }
+
+    /// How the camera sees, where the profile knows it.
+    pub fn known_camera(&self) -> Option<&KnownCamera> {
+        match &self.knowledge {
+            Knowledge::Camera(known) => Some(known),
+            Knowledge::Calibrations(_) => None,
+        }
     }
 
     /// The camera.
@@ -128,9 +152,13 @@ impl Profile {
         &self.camera
     }
 
-    /// The calibrations, bluest light first.
+    /// The calibrations, bluest light first. Those of a profile that is a camera are computed when they are first asked
+    /// for: D65, D50 and A stand for all lights.
     pub fn calibrations(&self) -> &[Calibration] {
-        &self.calibrations
+        match &self.knowledge {
+            Knowledge::Calibrations(all) => all,
+            Knowledge::Camera(known) => known.calibrations(),
+        }
     }
 
     /// Where the profile came from.
@@ -138,22 +166,35 @@ impl Profile {
         &self.origin
     }
 
-    /// The model for a white of `kelvin`: between two lights by their mired (1e6 / K), beyond them the nearest.
-    pub fn model_for(&self, kelvin: f64) -> Model {
-        let mired = |c: &Calibration| 1e6 / c.light.kelvin();
-        let wanted = 1e6 / kelvin;
-        let first = &self.calibrations[0];
-        let mut previous = first;
-        for next in &self.calibrations {
-            if wanted <= mired(next) {
-                let span = mired(next) - mired(previous);
-                let weight = if span > 0.0 { (wanted - mired(previous)) / span } else { 1.0 };
-                return previous.model.mix(&next.model, weight.clamp(0.0, 1.0));
-            }
-            previous = next;
-        }
-        previous.model.clone()
+    /// Whether it depends on the light which model serves.
+    pub fn has_several_lights(&self) -> bool {
+        !matches!(&self.knowledge, Knowledge::Calibrations(all) if all.len() == 1)
     }
+
+    /// The model for a white: between two lights by their mired (1e6 / K), beyond them the nearest; or what the camera's
+    /// sensitivities give for it.
+    pub fn model_for(&self, white: Xy) -> Model {
+        match &self.knowledge {
+            Knowledge::Calibrations(all) => between(all, Temperature::of(white).kelvin),
+            Knowledge::Camera(known) => known.model_for(white),
+        }
+    }
+}
+
+fn between(calibrations: &[Calibration], kelvin: f64) -> Model {
+    let mired = |c: &Calibration| 1e6 / c.light.kelvin();
+    let wanted = 1e6 / kelvin;
+    let first = &calibrations[0];
+    let mut previous = first;
+    for next in calibrations {
+        if wanted <= mired(next) {
+            let span = mired(next) - mired(previous);
+            let weight = if span > 0.0 { (wanted - mired(previous)) / span } else { 1.0 };
+            return previous.model.mix(&next.model, weight.clamp(0.0, 1.0));
+        }
+        previous = next;
+    }
+    previous.model.clone()
 }
 
 #[cfg(test)]
@@ -175,13 +216,13 @@ mod tests {
     #[test]
     fn lights_interpolate_in_mired_and_clamp_beyond() {
         let profile = two_lights();
-        let y = |kelvin: f64| profile.model_for(kelvin).xyz([1.0; 3]).y;
+        let y = |kelvin: f64| profile.model_for(Temperature { kelvin, duv: 0.0 }.xy()).xyz([1.0; 3]).y;
         let lights: Vec<f64> = profile.calibrations().iter().map(|c| c.light.kelvin()).collect();
         let middle = 2e6 / (1e6 / lights[0] + 1e6 / lights[1]);
         assert!((y(20000.0) - 3.0).abs() < 1e-12);
-        assert!((y(lights[0]) - 3.0).abs() < 1e-9);
-        assert!((y(middle * 0.0 + 1e6 / ((1e6 / lights[0] + 1e6 / lights[1]) / 2.0)) - 2.0).abs() < 1e-9);
-        assert!((y(lights[1]) - 1.0).abs() < 1e-9);
+        assert!((y(lights[0]) - 3.0).abs() < 1e-6);
+        assert!((y(middle * 0.0 + 1e6 / ((1e6 / lights[0] + 1e6 / lights[1]) / 2.0)) - 2.0).abs() < 1e-6);
+        assert!((y(lights[1]) - 1.0).abs() < 1e-6);
         assert!((y(2000.0) - 1.0).abs() < 1e-12);
     }
 

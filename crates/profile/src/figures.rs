@@ -50,6 +50,19 @@ pub struct Errors {
 }
 
 impl Errors {
+    /// The same errors with four decimals.
+    #[must_use]
+    pub fn rounded(self) -> Self {
+        let round = |v: f64| (v * 1e4).round() / 1e4;
+        let summary = |s: Summary| Summary {
+            mean: round(s.mean),
+            median: round(s.median),
+            p95: round(s.p95),
+            max: round(s.max),
+        };
+        Self { de2000: summary(self.de2000), de_uv: summary(self.de_uv) }
+    }
+
     /// Errors of `estimates` against `truths`, XYZ relative to `white`.
     pub fn between(estimates: &[Xyz], truths: &[Xyz], white: Xyz) -> Self {
         let pairs = || estimates.iter().zip(truths);
@@ -74,18 +87,10 @@ impl Figures {
     /// The same figures with four decimals, more than anybody can see.
     #[must_use]
     pub fn rounded(&self) -> Self {
-        let round = |v: f64| (v * 1e4).round() / 1e4;
-        let summary = |s: Summary| Summary {
-            mean: round(s.mean),
-            median: round(s.median),
-            p95: round(s.p95),
-            max: round(s.max),
-        };
-        let errors = |e: Errors| Errors { de2000: summary(e.de2000), de_uv: summary(e.de_uv) };
         Self {
-            training: self.training.map(errors),
-            leave_one_out: self.leave_one_out.map(errors),
-            held_out: self.held_out.map(errors),
+            training: self.training.map(Errors::rounded),
+            leave_one_out: self.leave_one_out.map(Errors::rounded),
+            held_out: self.held_out.map(Errors::rounded),
         }
     }
 }

@@ -39,6 +39,8 @@ pub use kind::Kind;
 pub mod figures;
 pub use figures::{Errors, Figures, Summary};
 
+pub mod camera;
+
 pub mod fit;
 
 pub mod lint;

@@ -10,6 +10,9 @@
 
 use darkroot_photo::Capture;
 
+pub mod cameras;
+pub use cameras::{Listed, cameras};
+
 pub mod error;
 pub use error::{Damage, Error, TooLarge, Unknown};
 

@@ -40,7 +40,7 @@ fn ideal(kind: Kind, camera: &Sensitivities, light: &Spectrum, patches: &[Spectr
         Kind::Spectral | Kind::Chromatic => {
             let prior = Prior::under(&Population::builtin().unwrap(), light).unwrap();
             let set = VirtualSet::builtin().unwrap();
-            let knowledge = Knowledge { reflectances: patches, light, prior: &prior, set: &set };
+            let knowledge = Knowledge { reflectances: patches, light, prior: &prior, set };
             spectral::model_only(&samples, knowledge, kind).unwrap()
         }
         _ => fit::fit(&samples, kind).unwrap().fit.model,

@@ -199,7 +199,7 @@ fn the_statistics_in_the_program_are_as_good_as_the_spectra() {
     let cameras = Population::builtin().unwrap();
     let prior = |_: &str, light: &Spectrum| Prior::under(&cameras, light).unwrap();
     for kind in [Kind::Spectral, Kind::Chromatic] {
-        let held = held_out_with(&data::classic_24(), kind, 0.0, &set, prior);
+        let held = held_out_with(&data::classic_24(), kind, 0.0, set, prior);
         println!("built in, {kind}: mean {:.3} max {:.2} folds {:.3}", held.mean, held.max, held.worst_folds);
         assert!(held.mean < 0.60 && held.max < 3.0 && held.worst_folds <= 0.0);
     }

@@ -11,6 +11,7 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     let words = match error.downcast_ref::<E>()? {
         E::Chart { source, .. } => return of_chart(source),
         E::Neutral { source: NeutralError::NoMatrix, .. } => "`--neutral` takes them",
+        E::NotListed { .. } => "`darkroot profile list --all` shows these cameras",
         E::NoProfile { .. } => "`darkroot profile list` shows these",
         E::NoLight => "name one with `--light`",
         E::SeveralShots { .. } => {

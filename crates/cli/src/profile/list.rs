@@ -5,7 +5,9 @@ use std::io::Write as _;
 use anyhow::Result;
 use clap::Args;
 use darkroot::shown;
+use darkroot::store::Found;
 use darkroot_profile::Calibration;
+use darkroot_profile::ProfileCamera;
 use serde_json::json;
 
 use crate::Outcome;
@@ -13,41 +15,88 @@ use crate::Outcome;
 /// List the profiles of your folder and those built in
 #[derive(Debug, Args)]
 pub(super) struct List {
+    /// Every camera of which anything is known: those, too, whose colours are estimated from their published matrix
+    #[arg(long)]
+    all: bool,
+
     /// One line of JSON for each profile
     #[arg(long)]
     json: bool,
 }
 
+/// A line of the list.
+struct Line {
+    camera: ProfileCamera,
+    lights: Vec<String>,
+    models: Vec<String>,
+    unseen: Vec<Option<f64>>,
+    place: String,
+}
+
 impl List {
     pub(super) fn run(self) -> Result<Outcome> {
         let store = super::store();
+        let found = store.all();
+        let mut lines: Vec<Line> = found.iter().map(|f| of_profile(f)).collect();
+        if self.all {
+            let known = |camera: &darkroot::Listed| {
+                found.iter().any(|f| f.profile.camera().is(&camera.make, &camera.model))
+            };
+            lines.extend(darkroot::cameras().into_iter().filter(|c| !known(c)).map(of_list));
+        }
+        let width = lines.iter().map(|l| l.camera.name().chars().count()).max().unwrap_or(0);
         let mut out = crate::out::lines();
-        let all = store.all();
-        let width = all.iter().map(|f| f.profile.camera().name().len()).max().unwrap_or(0);
-        for found in &all {
-            let profile = &found.profile;
-            let lights: Vec<&str> = profile.calibrations().iter().map(|c| c.light.name.as_str()).collect();
-            let mut models: Vec<String> = profile.calibrations().iter().map(|c| c.kind.to_string()).collect();
-            models.dedup();
+        for Line { camera, lights, models, unseen, place } in &lines {
             if self.json {
                 let line = json!({
-                    "camera": profile.camera().name(),
-                    "aliases": profile.camera().aliases,
+                    "camera": camera.name(),
+                    "aliases": camera.aliases,
                     "lights": lights,
                     "models": models,
-                    "held_out_de2000_mean": profile.calibrations().iter().map(unseen).collect::<Vec<_>>(),
-                    "place": found.place,
+                    "held_out_de2000_mean": unseen,
+                    "place": place,
                 });
                 writeln!(crate::out::json(), "{line}")?;
             } else {
-                let (name, lights) = (shown(&profile.camera().name()), shown(&lights.join(", ")));
-                writeln!(out, "{name:width$}  {:10}  {lights:12}  {}", models.join(", "), found.place)?;
+                let (name, lights) = (shown(&camera.name()), shown(&lights.join(", ")));
+                writeln!(out, "{name:width$}  {:10}  {lights:12}  {place}", models.join(", "))?;
             }
         }
-        if all.is_empty() && !self.json {
+        if lines.is_empty() && !self.json {
             crate::say(format_args!("there are no profiles"));
         }
         Ok(Outcome::Done)
+    }
+}
+
+fn of_profile(found: &Found) -> Line {
+    let profile = &found.profile;
+    let camera = profile.camera().clone();
+    let place = found.place.clone();
+    if let Some(known) = profile.known_camera() {
+        let models = vec!["camera".to_owned()];
+        let unseen = known.figures().iter().map(|judged| Some(judged.errors.de2000.mean)).collect();
+        return Line { camera, lights: vec!["any light".to_owned()], models, unseen, place };
+    }
+    let mut models: Vec<String> = profile.calibrations().iter().map(|c| c.kind.to_string()).collect();
+    models.dedup();
+    Line {
+        camera,
+        lights: profile.calibrations().iter().map(|c| c.light.name.clone()).collect(),
+        models,
+        unseen: profile.calibrations().iter().map(unseen).collect(),
+        place,
+    }
+}
+
+/// A camera that decoders list with its matrix.
+fn of_list(camera: darkroot::Listed) -> Line {
+    Line {
+        camera: ProfileCamera { make: camera.make, model: camera.model, aliases: Vec::new() },
+        lights: vec!["any light".to_owned()],
+        models: vec!["estimate".to_owned()],
+        unseen: Vec::new(),
+        place: "estimated from its published matrix".to_owned(),
     }
 }
 

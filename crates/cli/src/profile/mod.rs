@@ -2,6 +2,7 @@
 
 mod apply;
 mod export;
+mod from_matrix;
 mod from_spectra;
 mod lights;
 mod lint;
@@ -37,6 +38,7 @@ enum Command {
     List(list::List),
     Lint(lint::Lint),
     FromSpectra(from_spectra::FromSpectra),
+    FromMatrix(from_matrix::FromMatrix),
     Export(export::Export),
 }
 
@@ -49,6 +51,7 @@ impl Profile {
             Command::List(command) => command.run(),
             Command::Lint(command) => command.run(),
             Command::FromSpectra(command) => command.run(common),
+            Command::FromMatrix(command) => command.run(common),
             Command::Export(command) => command.run(common),
         }
     }

@@ -8,6 +8,7 @@ use clap::Args;
 use darkroot::shown;
 use darkroot::store::Found;
 use darkroot_colour::{Lab, white};
+use darkroot_profile::camera::KnownCamera;
 use darkroot_profile::{Calibration, Errors, Model, polynomial};
 
 use crate::Outcome;
@@ -38,7 +39,7 @@ fn words(found: &Found) -> String {
         ("origin", &origin.summary),
         ("chart", &origin.chart),
         ("reference", &origin.reference),
-        ("sensitivities", &origin.sensitivities),
+        ("measured in", &origin.sensitivities),
         ("date", &origin.date),
         ("program", &origin.program),
     ] {
@@ -46,10 +47,36 @@ fn words(found: &Found) -> String {
             let _ = writeln!(text, "{label:15}{}", shown(value));
         }
     }
+    if let Some(known) = profile.known_camera() {
+        describe_camera(&mut text, known);
+    }
     for calibration in profile.calibrations() {
         describe(&mut text, calibration);
     }
     text
+}
+
+/// What a profile that is a camera knows; its calibrations, which follow, are three of all that it can make.
+fn describe_camera(text: &mut String, known: &KnownCamera) {
+    let peak = |channel: usize| {
+        let largest = known.samples()[channel].iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        largest.map_or(0, |(i, _)| 380 + 10 * i)
+    };
+    let _ = writeln!(
+        text,
+        "{:15}380 to 780 nm every 10 nm; red is most sensitive at {} nm, green at {} nm, blue at {} nm",
+        "sensitivities",
+        peak(0),
+        peak(1),
+        peak(2)
+    );
+    if let Some(expected) = known.expected() {
+        let _ = writeln!(
+            text,
+            "{:15}mean dE2000 {expected:.1} under daylight, for they are an estimate",
+            "expected"
+        );
+    }
 }
 
 fn describe(text: &mut String, calibration: &Calibration) {

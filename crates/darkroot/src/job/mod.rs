@@ -236,9 +236,9 @@ fn plan(
         colours: if camera_output {
             "none (camera RGB)".to_owned()
         } else {
-            colours(&plan, capture, profile)
+            colours(&plan, capture, chosen.as_ref())
         },
-        profile: chosen.map(|c| c.place.into_owned()).filter(|_| !camera_output),
+        profile: chosen.filter(|c| !camera_output && !c.estimated).map(|c| c.place.into_owned()),
         kelvin: plan.white.map(|w| w.kelvin),
         tint: plan.white.map(|w| w.tint()),
         multipliers: plan.multipliers,

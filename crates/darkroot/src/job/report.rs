@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use darkroot_develop::{Bits, Colours, Plan};
 use darkroot_photo::{Capture, PictureSpace, Size};
-use darkroot_profile::Profile;
+
+use crate::ChosenProfile;
 use serde::Serialize;
 
 /// What was done to one file.
@@ -53,11 +54,16 @@ pub struct Report {
 }
 
 /// What gave the colours, in words.
-pub(super) fn colours(plan: &Plan, capture: &Capture, profile: Option<&Profile>) -> String {
-    match (plan.colours, profile) {
-        (Colours::Profile, Some(p)) => {
-            let light = p.calibrations().iter().map(|c| c.light.name.as_str()).collect::<Vec<_>>().join(", ");
-            format!("profile for {} ({light})", p.camera().name())
+pub(super) fn colours(plan: &Plan, capture: &Capture, chosen: Option<&ChosenProfile<'_>>) -> String {
+    match (plan.colours, chosen) {
+        (Colours::Profile, Some(chosen)) if chosen.estimated => chosen.place.to_string(),
+        (Colours::Profile, Some(chosen)) => {
+            let profile = &chosen.profile;
+            let lights = || {
+                profile.calibrations().iter().map(|c| c.light.name.as_str()).collect::<Vec<_>>().join(", ")
+            };
+            let light = profile.known_camera().map_or_else(lights, |_| "its sensitivities".to_owned());
+            format!("profile for {} ({light})", profile.camera().name())
         }
         (Colours::CameraMatrix, _) if capture.source.format == "DNG" => "matrix in the file".to_owned(),
         (Colours::CameraMatrix, _) => "camera matrix".to_owned(),

@@ -4,6 +4,18 @@
 use crate::Kind;
 use crate::kind::UnknownKind;
 
+/// Why sensitivities cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SensitivitiesFault {
+    /// Another number of samples.
+    #[error("a channel has {0} numbers, not the 41 of 380 to 780 nm every 10 nm")]
+    Count(usize),
+    /// Values that no camera has.
+    #[error("a value is not a finite number, or a channel sees nothing")]
+    Blind,
+}
+
 /// Why a calibration cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -45,10 +45,25 @@
 //! de2000 = 0.4
 //! ```
 //!
+//! A profile that is a camera has version 2 and, instead of calibrations:
+//!
+//! ```toml
+//! [sensitivities]          # 380 to 780 nm every 10 nm: 41 numbers each
+//! red = [0.0, 0.001]
+//! green = [0.0, 0.002]
+//! blue = [0.001, 0.2]
+//! expected_de2000 = 1.1    # optional: they are an estimate, and colours are probably off by so much
+//!
+//! [[sensitivities.held_out]]  # optional, for each light: errors on surfaces that took no part
+//! light = "D65"
+//! de2000 = [0.5, 0.4, 1.2, 1.9]
+//! de_uv = [0.9, 0.7, 2.2, 3.0]
+//! ```
+//!
 //! Which parts a model has follows from its name; see [`crate::Kind`].
 
 mod fault;
-pub use fault::CalibrationFault;
+pub use fault::{CalibrationFault, SensitivitiesFault};
 
 mod read;
 mod write;
@@ -67,7 +82,9 @@ pub enum Error {
         detail: String,
     },
     /// Another version of the format.
-    #[error("has version {found} of the profile format, this program reads version 1; get a newer Darkroot")]
+    #[error(
+        "has version {found} of the profile format, this program reads versions 1 and 2; get a newer Darkroot"
+    )]
     Version {
         /// The version in the file.
         found: i64,
@@ -86,14 +103,22 @@ pub enum Error {
         /// What is wrong.
         source: CalibrationFault,
     },
+    /// Sensitivities that cannot be those of a camera.
+    #[error("has unusable sensitivities: {0}")]
+    Sensitivities(SensitivitiesFault),
     /// No calibration at all.
-    #[error("has no [[calibration]]; a profile needs at least one light")]
+    #[error("has neither a [[calibration]] nor [sensitivities]; a profile needs one of both")]
     Empty,
+    /// Both.
+    #[error("has a [[calibration]] and [sensitivities]; a profile has one of both")]
+    Both,
 }
 
 /// First line of every profile.
 const FORMAT: &str = "darkroot profile";
 const VERSION: i64 = 1;
+/// Version of a profile that is a camera.
+const CAMERA_VERSION: i64 = 2;
 /// What balanced RGB and XYZ mean in every profile of this version.
 const WHITE: &str = "(1,1,1) is the white of the light; XYZ relative to D50 by Bradford";
 

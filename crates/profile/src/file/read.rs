@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use darkroot_colour::{Matrix3, Xy, Xyz};
 use serde::Deserialize;
 
-use super::{CalibrationFault, Error, FORMAT, VERSION, WHITE};
+use super::{CAMERA_VERSION, CalibrationFault, Error, FORMAT, SensitivitiesFault, VERSION, WHITE};
+use crate::camera::{Judged, KnownCamera, known};
 use crate::residual::Centre;
 use crate::{
     Calibration, Errors, Figures, HuePlane, Kind, Light, Model, Order, Origin, Patch, Polynomial, Profile,
@@ -23,6 +24,26 @@ struct File {
     origin: OriginTable,
     #[serde(default)]
     calibration: Vec<CalibrationTable>,
+    sensitivities: Option<SensitivitiesTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SensitivitiesTable {
+    red: Vec<f64>,
+    green: Vec<f64>,
+    blue: Vec<f64>,
+    expected_de2000: Option<f64>,
+    #[serde(default)]
+    held_out: Vec<JudgedTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JudgedTable {
+    light: String,
+    de2000: [f64; 4],
+    de_uv: [f64; 4],
 }
 
 #[derive(Deserialize)]
@@ -122,18 +143,42 @@ pub fn parse(text: &str) -> Result<Profile, Error> {
             detail: format!("its format is `{}`, not `{FORMAT}`", short(&head.format)),
         });
     }
-    if head.version != VERSION {
+    if head.version != VERSION && head.version != CAMERA_VERSION {
         return Err(Error::Version { found: head.version });
     }
     let file: File = toml::from_str(text).map_err(syntax)?;
-    debug_assert!(file.format == FORMAT && file.version == VERSION);
+    debug_assert!(file.format == FORMAT && file.version == head.version);
     if let Some(found) = file.white.filter(|w| w != WHITE) {
         return Err(Error::White { found });
     }
     let calibrations = file.calibration.into_iter().map(calibration).collect::<Result<Vec<_>, _>>()?;
     let camera =
         ProfileCamera { make: file.camera.make, model: file.camera.model, aliases: file.camera.aliases };
-    Profile::new(camera, calibrations, origin(file.origin)).ok_or(Error::Empty)
+    let origin = origin(file.origin);
+    match file.sensitivities {
+        Some(_) if !calibrations.is_empty() => Err(Error::Both),
+        Some(table) => {
+            let known = known_camera(table).map_err(Error::Sensitivities)?;
+            Ok(Profile::of_camera(camera, known, origin))
+        }
+        None => Profile::new(camera, calibrations, origin).ok_or(Error::Empty),
+    }
+}
+
+fn known_camera(table: SensitivitiesTable) -> Result<KnownCamera, SensitivitiesFault> {
+    let samples = |channel: Vec<f64>| {
+        let count = channel.len();
+        <[f64; known::KEPT]>::try_from(channel).map_err(|_| SensitivitiesFault::Count(count))
+    };
+    let samples = [samples(table.red)?, samples(table.green)?, samples(table.blue)?];
+    let judged = table
+        .held_out
+        .into_iter()
+        .map(|JudgedTable { light, de2000, de_uv }| Some(Judged { light, errors: errors(de2000, de_uv)? }));
+    let judged = judged.collect::<Option<Vec<_>>>().ok_or(SensitivitiesFault::Blind)?;
+    let sound = table.expected_de2000.is_none_or(f64::is_finite);
+    let known = KnownCamera::of_samples(samples).filter(|_| sound).ok_or(SensitivitiesFault::Blind)?;
+    Ok(known.judged(judged).expecting(table.expected_de2000))
 }
 
 /// What the reader says, with the line that it is about.
@@ -258,19 +303,20 @@ fn residual(table: ResidualTable) -> Result<Residual, CalibrationFault> {
 }
 
 fn figures(table: &FiguresTable) -> Result<Figures, CalibrationFault> {
-    let summary = |v: [f64; 4]| match v.iter().all(|v| v.is_finite()) {
-        true => Ok(Summary { mean: v[0], median: v[1], p95: v[2], max: v[3] }),
-        false => Err(CalibrationFault::SOMEWHERE),
-    };
-    let read = |t: &ErrorsTable| {
-        Ok::<_, CalibrationFault>(Errors { de2000: summary(t.de2000)?, de_uv: summary(t.de_uv)? })
-    };
-    let errors = |table: Option<&ErrorsTable>| table.map(read).transpose();
+    let read = |t: &ErrorsTable| errors(t.de2000, t.de_uv).ok_or(CalibrationFault::SOMEWHERE);
+    let set = |table: Option<&ErrorsTable>| table.map(read).transpose();
     Ok(Figures {
-        training: errors(table.training.as_ref())?,
-        leave_one_out: errors(table.leave_one_out.as_ref())?,
-        held_out: errors(table.held_out.as_ref())?,
+        training: set(table.training.as_ref())?,
+        leave_one_out: set(table.leave_one_out.as_ref())?,
+        held_out: set(table.held_out.as_ref())?,
     })
+}
+
+/// `None` where a value is no finite number.
+fn errors(de2000: [f64; 4], de_uv: [f64; 4]) -> Option<Errors> {
+    let summary = |[mean, median, p95, max]: [f64; 4]| Summary { mean, median, p95, max };
+    let finite = de2000.iter().chain(&de_uv).all(|v| v.is_finite());
+    finite.then(|| Errors { de2000: summary(de2000), de_uv: summary(de_uv) })
 }
 
 fn patch(table: PatchTable) -> Result<Patch, CalibrationFault> {

@@ -2,18 +2,20 @@
 
 use std::fmt::Write;
 
-use super::{FORMAT, VERSION, WHITE};
+use super::{CAMERA_VERSION, FORMAT, VERSION, WHITE};
+use crate::camera::{Judged, KnownCamera};
 use crate::{Calibration, Errors, Model, Origin, Profile, Summary, polynomial};
 
 /// The text of a profile's file. [`super::parse`] gives the same profile back, to the last bit.
 pub fn format(profile: &Profile) -> String {
     let camera = profile.camera();
     let aliases: Vec<String> = camera.aliases.iter().map(|a| quoted(a)).collect();
+    let version = if profile.known_camera().is_some() { CAMERA_VERSION } else { VERSION };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
         text,
-        "format = {}\nversion = {VERSION}\nwhite = {}\n\n[camera]\nmake = {}\nmodel = {}\naliases = [{}]\n",
+        "format = {}\nversion = {version}\nwhite = {}\n\n[camera]\nmake = {}\nmodel = {}\naliases = [{}]\n",
         quoted(FORMAT),
         quoted(WHITE),
         quoted(&camera.make),
@@ -21,8 +23,9 @@ pub fn format(profile: &Profile) -> String {
         aliases.join(", "),
     );
     write_origin(&mut text, profile.origin());
-    for calibration in profile.calibrations() {
-        write_calibration(&mut text, calibration);
+    match profile.known_camera() {
+        Some(known) => write_sensitivities(&mut text, known),
+        None => profile.calibrations().iter().for_each(|c| write_calibration(&mut text, c)),
     }
     text
 }
@@ -50,6 +53,26 @@ fn write_origin(text: &mut String, origin: &Origin) {
     }
 }
 
+fn write_sensitivities(text: &mut String, known: &KnownCamera) {
+    text.push_str("\n[sensitivities] # 380 to 780 nm every 10 nm\n");
+    for (name, samples) in ["red", "green", "blue"].iter().zip(known.samples()) {
+        let values: Vec<String> = samples.iter().map(ToString::to_string).collect();
+        let _ = writeln!(text, "{name} = [{}]", values.join(", "));
+    }
+    if let Some(expected) = known.expected() {
+        let _ = writeln!(text, "expected_de2000 = {expected:?}");
+    }
+    for Judged { light, errors } in known.figures() {
+        let _ = writeln!(text, "\n[[sensitivities.held_out]] # mean, median, 95th percentile, largest");
+        let _ = writeln!(text, "light = {}", quoted(light));
+        let _ = writeln!(text, "de2000 = {:?}\nde_uv = {:?}", four(errors.de2000), four(errors.de_uv));
+    }
+}
+
+fn four(s: Summary) -> [f64; 4] {
+    [s.mean, s.median, s.p95, s.max]
+}
+
 fn write_calibration(text: &mut String, calibration: &Calibration) {
     let Calibration { light, kind, model, figures, patches } = calibration;
     let _ = write!(
@@ -70,8 +93,7 @@ fn write_calibration(text: &mut String, calibration: &Calibration) {
         text.push_str("\n[calibration.figures] # mean, median, 95th percentile, largest\n");
     }
     for (name, Errors { de2000, de_uv }) in sets.into_iter().filter_map(|(n, e)| Some((n, e?))) {
-        let values = |s: Summary| [s.mean, s.median, s.p95, s.max];
-        let _ = writeln!(text, "{name} = {{ de2000 = {:?}, de_uv = {:?} }}", values(de2000), values(de_uv));
+        let _ = writeln!(text, "{name} = {{ de2000 = {:?}, de_uv = {:?} }}", four(de2000), four(de_uv));
     }
     for patch in patches {
         let _ = write!(

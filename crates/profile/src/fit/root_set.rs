@@ -9,6 +9,8 @@
 //! chromaticities, which stand for all colours because the model is homogeneous. Where it is below the margin, what is
 //! missing is penalised, with a weight that grows from round to round, by the Gauss-Newton method.
 
+use std::sync::OnceLock;
+
 use darkroot_colour::{Matrix3, Vector3, Xyz};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -48,7 +50,7 @@ pub fn fit(set: &Rendered) -> Result<Model, FitError> {
     let colours = Colours::new(set).ok_or(undetermined.clone())?;
     let mut last = None;
     for ridge in RIDGES {
-        let goal = colours.goal(ridge);
+        let goal = colours.goal(ridge).ok_or(undetermined.clone())?;
         let start = goal.solve(&[]).ok_or(undetermined.clone())?;
         let folds = Folds::new(set.samples.white(), &start);
         let moved = folds.remove(&goal, start);
@@ -66,18 +68,21 @@ pub fn fit(set: &Rendered) -> Result<Model, FitError> {
     root_polynomial(ORDER, set.samples.white(), &rows).map(Model::from).ok_or(undetermined)
 }
 
-/// The colours of the set as least squares, reduced to a triangle. Unknowns are X, Y and Z of the first feature, then
+/// The colours of the set as least squares, by their normal equations. Unknowns are X, Y and Z of the first feature, then
 /// of the second, and so on.
 struct Colours {
-    rows: DMatrix<f64>,
+    /// Sum of the squares of the colours' own rows.
+    data: DMatrix<f64>,
+    /// Of those of the penalties.
+    penalties: DMatrix<f64>,
+    /// Rows times targets.
     targets: DVector<f64>,
-    /// Length of each column of the colours' own rows.
-    lengths: DVector<f64>,
     /// Sum of the colours' weights.
     weight: f64,
 }
 
-/// The least squares problem without folds in it.
+/// The least squares problem without folds in it, reduced to a triangle: a row for each unknown. The rows that keep folds
+/// away are steep, so that with them only the triangle is exact enough, not its square.
 struct Goal {
     rows: DMatrix<f64>,
     targets: DVector<f64>,
@@ -94,62 +99,62 @@ impl Colours {
     fn new(set: &Rendered) -> Option<Self> {
         let samples = &set.samples;
         let weights = set.weights_with(IDEAL);
-        let metric: Vec<Matrix3> = set
-            .metric
-            .iter()
-            .zip(&weights)
-            .map(|(m, w)| Some(mixed(m)? * w.sqrt()))
-            .collect::<Option<_>>()?;
+        let metric: Vec<Matrix3> = set.metric.iter().zip(&weights).map(|(m, w)| mixed(m) * *w).collect();
         let width = features(ORDER, [0.0; 3]).len();
-        let (count, columns) = (samples.len(), 3 * width);
-
-        let mut data = DMatrix::zeros(3 * count, columns);
-        let mut targets = DVector::zeros(3 * count);
+        let mut data = DMatrix::zeros(3 * width, 3 * width);
+        let mut targets = DVector::zeros(3 * width);
+        let mut total = Matrix3::zeros();
         let white = Vector3::from(samples.white());
-        for (i, (rgb, xyz)) in samples.rgb().iter().zip(samples.xyz()).enumerate() {
-            for (f, value) in features(ORDER, *rgb).into_iter().enumerate() {
-                data.view_mut((3 * i, 3 * f), (3, 3)).copy_from(&(metric[i] * value));
-            }
+        for ((rgb, xyz), metric) in samples.rgb().iter().zip(samples.xyz()).zip(&metric) {
+            let values = features(ORDER, *rgb);
+            add_product(&mut data, &values, &values, metric);
             let rest = Vector3::from(*xyz) - white * rgb[1];
-            targets.rows_mut(3 * i, 3).copy_from(&(metric[i] * rest));
+            let weighted = metric * rest;
+            for (f, value) in values.iter().enumerate() {
+                let mut target = targets.fixed_rows_mut::<3>(3 * f);
+                target += weighted * *value;
+            }
+            total += metric;
         }
-        let lengths = DVector::from_fn(columns, |c, _| data.column(c).norm());
-        let total = metric.iter().fold(Matrix3::zeros(), |sum, m| sum + m.transpose() * m);
-        let root = total.cholesky()?.l().transpose();
+        let mut penalties = DMatrix::zeros(3 * width, 3 * width);
         let points = saturated_points();
-        let pull = DMatrix::from_fn(points.len(), width, |i, f| {
-            let bent = if f < 2 { 0.0 } else { features(ORDER, points[i])[f] };
-            bent * (ANCHORS / points.len() as f64).sqrt()
-        });
-        let slopes = slopes(samples.rgb(), &metric, width);
-        let even = root * (3.0 / total.trace()).sqrt();
-        let penalties = [pull.kronecker(&to_dynamic(&root)), slopes.kronecker(&to_dynamic(&even))];
-        let rows: usize = penalties.iter().map(DMatrix::nrows).sum();
-        let mut all = data.resize_vertically(3 * count + rows, 0.0);
-        let mut first = 3 * count;
-        for penalty in &penalties {
-            all.rows_mut(first, penalty.nrows()).copy_from(penalty);
-            first += penalty.nrows();
+        for rgb in &points {
+            let mut pull = features(ORDER, *rgb);
+            pull[..2].fill(0.0);
+            add_product(&mut penalties, &pull, &pull, &(total * (ANCHORS / points.len() as f64)));
         }
-        let qr = all.qr();
-        let mut rotated = targets.resize_vertically(first, 0.0);
-        qr.q_tr_mul(&mut rotated);
-        Some(Self {
-            rows: qr.r(),
-            targets: rotated.rows(0, columns).into_owned(),
-            lengths,
-            weight: weights.iter().sum(),
-        })
+        let even = total * (3.0 / total.trace());
+        for (rgb, metric) in samples.rgb().iter().zip(&metric) {
+            let size = SLOPE * rgb[0].max(rgb[1]).max(rgb[2]);
+            let weight = size * size * metric.trace() / 3.0;
+            let slopes = psi_slopes(ORDER, *rgb);
+            for c in 0..3 {
+                let slope: Vec<f64> = [0.0; 2].into_iter().chain(slopes.iter().map(|s| s[c])).collect();
+                add_product(&mut penalties, &slope, &slope, &(even * weight));
+            }
+        }
+        Some(Self { data, penalties, targets, weight: weights.iter().sum() })
     }
 
-    /// The problem with a ridge on the psi coefficients.
-    fn goal(&self, ridge: f64) -> Goal {
-        let columns = self.rows.ncols();
-        let mut rows = self.rows.clone().resize_vertically(2 * columns, 0.0);
-        for c in 6..columns {
-            rows[(columns + c, c)] = ridge.sqrt() * self.lengths[c];
+    /// The problem with a ridge on the psi coefficients, which keeps its condition below 1e8.
+    fn goal(&self, ridge: f64) -> Option<Goal> {
+        let mut square = &self.data + &self.penalties;
+        for c in 6..square.ncols() {
+            square[(c, c)] += ridge * self.data[(c, c)];
         }
-        Goal { rows, targets: self.targets.clone().resize_vertically(2 * columns, 0.0), weight: self.weight }
+        let lower = square.cholesky()?.unpack();
+        let targets = lower.solve_lower_triangular(&self.targets)?;
+        Some(Goal { rows: lower.transpose(), targets, weight: self.weight })
+    }
+}
+
+/// Adds the product of two feature vectors, each entry times a 3 x 3 block.
+fn add_product(sum: &mut DMatrix<f64>, rows: &[f64], columns: &[f64], block: &Matrix3) {
+    for (j, column) in columns.iter().enumerate() {
+        for (i, row) in rows.iter().enumerate() {
+            let mut place = sum.fixed_view_mut::<3, 3>(3 * i, 3 * j);
+            place += block * (row * column);
+        }
     }
 }
 
@@ -158,12 +163,12 @@ impl Goal {
     fn solve(&self, further: &[Row]) -> Option<DVector<f64>> {
         let own = self.rows.nrows();
         let mut rows = self.rows.clone().resize_vertically(own + further.len(), 0.0);
-        let mut targets = self.targets.clone().resize_vertically(own + further.len(), 0.0);
+        let mut targets = DMatrix::from_column_slice(own, 1, self.targets.as_slice())
+            .resize_vertically(own + further.len(), 0.0);
         for (i, Row { row, target }) in further.iter().enumerate() {
             rows.row_mut(own + i).copy_from(row);
             targets[own + i] = *target;
         }
-        let targets = DMatrix::from_column_slice(targets.len(), 1, targets.as_slice());
         let unknowns = Problem { rows, targets, data: 0, block: 1 }.solve()?;
         Some(unknowns.column(0).into_owned())
     }
@@ -174,52 +179,24 @@ impl Goal {
     }
 }
 
-/// The metric of CIEDE2000 with a share of plain XYZ of the same size, as a matrix W again.
-fn mixed(w: &Matrix3) -> Option<Matrix3> {
+/// The metric of CIEDE2000, W'W, with a share of plain XYZ of the same size.
+fn mixed(w: &Matrix3) -> Matrix3 {
     let metric = w.transpose() * w;
-    let mixed = metric * (1.0 - PLAIN) + Matrix3::identity() * (PLAIN * metric.trace() / 3.0);
-    Some(mixed.cholesky()?.l().transpose())
-}
-
-/// The slopes of psi at all colours, each times the brightness of its colour, reduced to a triangle.
-fn slopes(rgb: &[[f64; 3]], metric: &[Matrix3], width: usize) -> DMatrix<f64> {
-    let mut all = DMatrix::zeros(3 * rgb.len(), width - 2);
-    for (i, (rgb, w)) in rgb.iter().zip(metric).enumerate() {
-        let size = SLOPE * rgb[0].max(rgb[1]).max(rgb[2]) * (w.norm_squared() / 3.0).sqrt();
-        for (f, slope) in psi_slopes(ORDER, *rgb).into_iter().enumerate() {
-            for c in 0..3 {
-                all[(3 * i + c, f)] = size * slope[c];
-            }
-        }
-    }
-    let triangle = all.qr().r();
-    let mut padded = DMatrix::zeros(triangle.nrows(), width);
-    padded.columns_mut(2, width - 2).copy_from(&triangle);
-    padded
-}
-
-fn to_dynamic(m: &Matrix3) -> DMatrix<f64> {
-    DMatrix::from_column_slice(3, 3, m.as_slice())
+    metric * (1.0 - PLAIN) + Matrix3::identity() * (PLAIN * metric.trace() / 3.0)
 }
 
 /// Where the model must not fold.
 struct Folds {
     white: Vector3,
     /// For each grid point and channel, the derivative of every feature.
-    slopes: Vec<Vec<[f64; 3]>>,
+    slopes: &'static [Vec<[f64; 3]>],
     /// Determinant of the matrix near grey.
     norm: f64,
 }
 
 impl Folds {
     fn new(white: Xyz, start: &DVector<f64>) -> Self {
-        let slopes = grid()
-            .into_iter()
-            .map(|rgb| {
-                let linear = [[1.0, -1.0, 0.0], [0.0, -1.0, 1.0]];
-                linear.into_iter().chain(psi_slopes(ORDER, rgb)).collect()
-            })
-            .collect();
+        let slopes = grid_slopes();
         let mut folds = Self { white: white.into(), slopes, norm: 1.0 };
         // At grey the slopes of psi vanish, so the first two features alone give the matrix.
         folds.norm = folds.jacobian(&folds.slopes[0][..2], start).determinant();
@@ -278,7 +255,7 @@ impl Folds {
         let cost = |x: &DVector<f64>, d: &[f64]| {
             goal.cost(x) + weight * d.iter().map(|d| (MARGIN - d).max(0.0).powi(2)).sum::<f64>()
         };
-        let lacking = determinants.iter().zip(&self.slopes).filter(|(d, _)| **d < MARGIN);
+        let lacking = determinants.iter().zip(self.slopes).filter(|(d, _)| **d < MARGIN);
         let rows: Vec<Row> = lacking
             .map(|(d, slopes)| {
                 let row = self.determinant_slope(slopes, unknowns) * weight.sqrt();
@@ -328,6 +305,16 @@ impl Folds {
 
 fn least(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The derivatives of every feature over the grid; the same for every camera.
+fn grid_slopes() -> &'static [Vec<[f64; 3]>] {
+    static SLOPES: OnceLock<Vec<Vec<[f64; 3]>>> = OnceLock::new();
+    let at = |rgb| {
+        let linear = [[1.0, -1.0, 0.0], [0.0, -1.0, 1.0]];
+        linear.into_iter().chain(psi_slopes(ORDER, rgb)).collect()
+    };
+    SLOPES.get_or_init(|| grid().into_iter().map(at).collect())
 }
 
 /// Chromaticities with the largest channel 1: 20 levels from 0.002 in equal ratios.

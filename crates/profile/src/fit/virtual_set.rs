@@ -1,6 +1,8 @@
 //! The virtual training set: many reflectances, and the camera RGB and XYZ that they have by computation. The models of
 //! the spectral prior are fitted to it, with the sensitivities that [`super::prior`] estimates.
 
+use std::sync::OnceLock;
+
 use darkroot_colour::{Matrix3, Spectrum};
 
 use super::metric::de2000_weights;
@@ -57,10 +59,13 @@ impl VirtualSet {
 
     /// The set made from the representative reflectances that are built into the program (`data/README.md`).
     /// `None` only if their text is broken.
-    pub fn builtin() -> Option<Self> {
-        let surfaces = parse_reflectances(include_str!("../../data/reflectances.csv"))?;
-        let (surfaces, weights): (Vec<Spectrum>, Vec<f64>) = surfaces.into_iter().unzip();
-        Some(Self::weighted(&surfaces, &weights))
+    pub fn builtin() -> Option<&'static Self> {
+        static SET: OnceLock<Option<VirtualSet>> = OnceLock::new();
+        let make = || {
+            let (surfaces, weights): (Vec<Spectrum>, Vec<f64>) = builtin_surfaces()?.into_iter().unzip();
+            Some(Self::weighted(&surfaces, &weights))
+        };
+        SET.get_or_init(make).as_ref()
     }
 
     /// The set made from these very reflectances, each with a weight.
@@ -135,6 +140,11 @@ impl Rendered {
             metric: kept.iter().map(|i| self.metric[*i]).collect(),
         })
     }
+}
+
+/// The representative reflectances that are built into the program, with their weights. `None` only if their text is broken.
+pub fn builtin_surfaces() -> Option<Vec<(Spectrum, f64)>> {
+    parse_reflectances(include_str!("../../data/reflectances.csv"))
 }
 
 /// Gaussian bands and gaps of three widths, rising and falling edges of two, between 0.02 and 0.92.

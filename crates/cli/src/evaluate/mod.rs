@@ -1,5 +1,7 @@
 //! `darkroot evaluate`.
 
+mod from_matrix;
+
 use std::io::Write as _;
 use std::path::PathBuf;
 
@@ -9,12 +11,15 @@ use darkroot::evaluate::{Row, in_brief, read_set, table};
 
 use crate::Outcome;
 
-/// Print the tables of the root-polynomial papers from spectra: models, each colour left out, at several exposures
+/// Print figures that anybody can compute again from spectra: the papers' tables, or cameras estimated from matrices
 ///
 /// Each model (linear, polynomial-2 to -4, root-2 to -4) is fitted by plain least squares at exposure 1 to a set of
 /// reflectances under a light, and judged by dE*uv (mean, median, 95th percentile, max) on each colour left out, at
 /// each exposure. Beside it stand the figures of the paper (CIC 2011, tables 1 and 2) where the camera is the Sony
 /// DXC-930, the light D65 and the set called SG, DC or SFU.
+///
+/// With `--from-matrix` each camera is estimated from its published matrix instead, with itself and its twins left out of all
+/// that the estimate rests on, and judged by its real sensitivities (docs/colour.md has the table and the command).
 #[derive(Debug, Args)]
 pub(crate) struct Evaluate {
     /// CSV of a camera's sensitivities; several may be given
@@ -32,6 +37,9 @@ pub(crate) struct Evaluate {
     /// Exposures to judge at, relative to that of the fit
     #[arg(long, value_name = "FACTORS", value_delimiter = ',', default_value = "1,0.5,1.5", value_parser = factor)]
     exposures: Vec<f64>,
+
+    #[command(flatten)]
+    from_matrix: from_matrix::FromMatrix,
 }
 
 fn factor(text: &str) -> Result<f64, String> {
@@ -43,6 +51,9 @@ impl Evaluate {
     pub(crate) fn run(self) -> Result<Outcome> {
         let sets = self.sets.iter().map(|s| read_set(s)).collect::<Result<Vec<_>, _>>()?;
         let lights = self.lights.iter().map(|l| darkroot::light::find(l)).collect::<Result<Vec<_>, _>>()?;
+        if self.from_matrix.is_asked() {
+            return self.from_matrix.run(self.cameras, sets, lights);
+        }
         let mut out = crate::out::lines();
         for camera in &self.cameras {
             let name = camera.file_stem().unwrap_or_default().to_string_lossy();

@@ -1,0 +1,146 @@
+//! `darkroot evaluate --from-matrix`.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+use darkroot::evaluate::from_matrix::{Judgement, Method, Request, evaluate};
+use darkroot::evaluate::{ReflectanceSet, published, read_set};
+use darkroot::light::LightSource;
+use darkroot::{shown, spectra};
+
+use crate::Outcome;
+
+/// How much worse than its matrix an estimate may be before it is named, mean dE2000.
+const WORSE: f64 = 0.1;
+
+#[derive(Debug, Args)]
+pub(super) struct FromMatrix {
+    /// CSV of published matrices: make, model, D65_00 ... D65_22; judges cameras estimated from them
+    #[arg(long, value_name = "FILE", requires = "prior", requires = "reflectances")]
+    from_matrix: Option<PathBuf>,
+
+    /// CSV of sensitivities that the estimate may rest on; several, each left out where it or a twin is judged
+    #[arg(long, value_name = "FILE", num_args = 1.., requires = "from_matrix")]
+    prior: Vec<PathBuf>,
+
+    /// CSV of reflectances that the estimate may rest on; those that are judged on are left out
+    #[arg(long, value_name = "FILE", num_args = 1.., requires = "from_matrix")]
+    reflectances: Vec<PathBuf>,
+
+    /// A chart, NAME=FILE.csv: for comparison, a matrix is fitted to its patches under each light
+    #[arg(long, value_name = "NAME=FILE", requires = "from_matrix")]
+    chart: Option<String>,
+
+    /// Wavelengths that count, nm: many sensitivities were measured over less than the whole range
+    #[arg(long, value_name = "NM-NM", default_value = "400-700", value_parser = range, requires = "from_matrix")]
+    between: (f64, f64),
+
+    /// A line for each camera
+    #[arg(long, requires = "from_matrix")]
+    each: bool,
+}
+
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let ends = text.split_once('-').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    ends.filter(|(a, b)| *a >= 380.0 && *a <= 450.0 && *b >= 650.0 && *b <= 780.0)
+        .ok_or_else(|| format!("`{text}` is no range of wavelengths like 400-700 that holds 450 to 650 nm"))
+}
+
+impl FromMatrix {
+    pub(super) fn is_asked(&self) -> bool {
+        self.from_matrix.is_some()
+    }
+
+    pub(super) fn run(
+        self,
+        cameras: Vec<PathBuf>,
+        judged: Vec<ReflectanceSet>,
+        lights: Vec<LightSource>,
+    ) -> Result<Outcome> {
+        let mut surfaces = Vec::new();
+        for path in &self.reflectances {
+            surfaces.extend(spectra::read(path)?.reflectances());
+        }
+        let names: Vec<String> = judged.iter().map(|set| set.name.clone()).collect();
+        let outcome = evaluate(&Request {
+            published: published::read(&self.from_matrix.unwrap_or_default())?,
+            prior: self.prior,
+            cameras,
+            surfaces,
+            judged,
+            chart: self.chart.as_deref().map(read_set).transpose()?,
+            lights: lights.clone(),
+            between: self.between,
+        })?;
+        for path in &outcome.without_matrix {
+            crate::say(format_args!("left out, no published matrix: {}", shown(path)));
+        }
+        if outcome.surfaces_left_out > 0 {
+            let count = outcome.surfaces_left_out;
+            crate::say(format_args!("left out of the prior because they are judged on: {count} surfaces"));
+        }
+        let mut out = crate::out::lines();
+        for light in &lights {
+            let light = light.light.name.as_str();
+            let results: Vec<&Judgement> = outcome.results.iter().filter(|r| r.light == light).collect();
+            write_light(&mut out, light, &results, &names)?;
+            if self.each {
+                for result in results {
+                    let figures: Vec<String> =
+                        result.errors.iter().map(|(_, e)| format!("{:.2}", e.mean)).collect();
+                    writeln!(out, "    {:34} {}", shown(&result.camera), figures.join("  "))?;
+                }
+            }
+        }
+        Ok(Outcome::Done)
+    }
+}
+
+fn write_light(
+    out: &mut impl std::io::Write,
+    light: &str,
+    results: &[&Judgement],
+    names: &[String],
+) -> Result<()> {
+    let count = results.len().max(1) as f64;
+    writeln!(out, "{}, {} cameras, dE2000", shown(light), results.len())?;
+    writeln!(out, "  {:40} mean   95 %   max   by set: {}", "", shown(&names.join(", ")))?;
+    let mut means: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    for method in Method::ALL {
+        let (mut sums, mut sets, mut seen) = ([0.0; 3], vec![0.0; names.len()], false);
+        for result in results {
+            for (_, e) in result.errors.iter().filter(|(m, _)| *m == method) {
+                seen = true;
+                for (sum, value) in sums.iter_mut().zip([e.mean, e.p95, e.max]) {
+                    *sum += value / count;
+                }
+                match method {
+                    Method::Matrix => means.entry(&result.camera).or_default()[0] = e.mean,
+                    Method::Spectrum => means.entry(&result.camera).or_default()[1] = e.mean,
+                    Method::White | Method::Chart => {}
+                }
+            }
+            for (_, each) in result.sets.iter().filter(|(m, _)| *m == method) {
+                sets.iter_mut().zip(each).for_each(|(sum, value)| *sum += value / count);
+            }
+        }
+        if seen {
+            let sets: Vec<String> = sets.iter().map(|mean| format!("{mean:.2}")).collect();
+            let [mean, p95, max] = sums;
+            writeln!(out, "  {method:40} {mean:.3}  {p95:5.2}  {max:5.1}   {}", sets.join(" "))?;
+        }
+    }
+    let worst = means.iter().max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
+    if let Some((camera, [matrix, estimate])) = worst {
+        let camera = shown(camera);
+        writeln!(out, "  worst: {camera} with {estimate:.2} (its matrix {matrix:.2})")?;
+    }
+    for (camera, [matrix, estimate]) in means.iter().filter(|(_, [m, e])| *e > *m + WORSE) {
+        writeln!(out, "  worse than its matrix: {} {estimate:.2} against {matrix:.2}", shown(camera))?;
+    }
+    writeln!(out)?;
+    Ok(())
+}
