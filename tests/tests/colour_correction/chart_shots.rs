@@ -300,6 +300,13 @@ fn corrections_do_no_harm_where_there_is_nothing_to_correct() {
     }
 }
 
+/// The patches of the Passport, balanced by its greys, with the stray light taken out.
+pub(super) fn passport_by_a_lamp(file: PathBuf) -> Vec<darkroot_calibrate::JudgedPatch> {
+    let light = darkroot::light::find("A").unwrap();
+    let made = profiled(file, light, "passport24", &data::classic_24(), correct_glare());
+    made.lights[0].calibrated.patches.clone()
+}
+
 /// A lamp in front, a window in dusk behind, a black level in the file that is too high; see docs/charts.md.
 #[test]
 #[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]

@@ -5,6 +5,7 @@
 
 mod chart_shots;
 mod data;
+mod estimated;
 mod held_out;
 mod published_tables;
 mod shipped;

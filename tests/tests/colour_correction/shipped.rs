@@ -5,40 +5,37 @@ use darkroot_colour::illuminant::Illuminant;
 use darkroot_colour::{Spectrum, Vector3, Xyz, adaptation, white};
 use darkroot_profile::lint::{Severity, check};
 use darkroot_profile::spectra::white as white_of;
-use darkroot_profile::{Errors, Kind, Model, Sensitivities};
+use darkroot_profile::{Errors, Kind, Model, Profile, Sensitivities};
 
 use super::data;
 
-/// Make and model of each profile, and its sensitivities.
-const CAMERAS: [(&str, &str); 11] = [
-    ("ARRI D-21", "rawtoaces_arri_d21"),
-    ("Canon EOS 5D Mark II", "rawtoaces_canon_eos_5d_mark_ii"),
-    ("Canon EOS 400D", "rawtoaces_canon_xti"),
-    ("Canon PowerShot S90", "rawtoaces_canon_powershot_s90"),
-    ("Nikon D70", "rawtoaces_nikon_d70"),
-    ("Nikon D200", "rawtoaces_nikon_d200"),
-    ("Nikon D700", "rawtoaces_nikon_d700"),
-    ("Nikon D5100", "rawtoaces_nikon_d5100"),
-    ("Nikon D7000", "rawtoaces_nikon_d7000"),
-    ("Sony ILCE-7RM2", "rawtoaces_sony_ilce-7rm2"),
-    ("Sony ILCE-7SM2", "rawtoaces_sony_ilce-7sm2"),
-];
+/// Every profile that is a camera: its name, itself, and the name of the file that it was made from.
+fn cameras() -> Vec<(String, Profile, String)> {
+    let all = ProfileStore::builtin();
+    let known = all.all().into_iter().filter(|found| found.profile.known_camera().is_some());
+    known
+        .map(|found| {
+            let file = found.profile.origin().sensitivities.trim_start_matches("cam_").trim_end_matches(".csv");
+            (found.profile.camera().name(), found.profile.clone(), file.to_owned())
+        })
+        .collect()
+}
 
 #[test]
 fn every_profile_passes_the_lint_and_shows_its_figures() {
-    let store = ProfileStore::builtin();
-    for (name, _) in CAMERAS {
-        let found = store.choose(name).unwrap();
-        let lights: Vec<&str> = found.profile.calibrations().iter().map(|c| c.light.name.as_str()).collect();
-        assert!(lights.starts_with(&["D65"]) && lights.ends_with(&["A"]), "{name}: {lights:?}");
-        for calibration in found.profile.calibrations() {
+    let cameras = cameras();
+    assert_eq!(cameras.len(), 52);
+    for (name, profile, _) in cameras {
+        let lights: Vec<&str> = profile.calibrations().iter().map(|c| c.light.name.as_str()).collect();
+        assert_eq!(lights, ["D65", "D50", "A"], "{name}");
+        for calibration in profile.calibrations() {
             assert_eq!(calibration.kind, Kind::Spectral);
-            assert!(calibration.figures.held_out.is_some() && calibration.figures.leave_one_out.is_some());
+            assert!(calibration.figures.held_out.is_some(), "{name}");
             for finding in check(calibration) {
                 assert!(finding.severity < Severity::Failure, "{name}: {finding:?}");
             }
         }
-        assert!(!found.profile.origin().reference_sha256.is_empty());
+        assert!(!profile.origin().sensitivities_sha256.is_empty());
     }
 }
 
@@ -53,22 +50,24 @@ fn errors(model: &Model, camera: &Sensitivities, light: &Spectrum, set: &[Spectr
 
 #[test]
 #[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
-fn lights_between_the_calibrations_are_nearly_as_good() {
-    let store = ProfileStore::builtin();
+fn every_light_is_served_by_its_white_alone() {
     let judge = data::reflectances("refl_iset_esserchart");
-    for (light, most) in [("D65", 1.3), ("D55", 1.3), ("D50", 1.6), ("A", 1.7)] {
+    // Lamps are guessed from their white: less good than daylight, better than a matrix.
+    for (light, mean, most) in
+        [("D65", 0.70, 1.3), ("D55", 0.68, 1.3), ("D50", 0.68, 1.6), ("A", 0.85, 1.9), ("F11", 1.2, 2.2)]
+    {
         let spectrum = Illuminant::by_name(light).unwrap().spectrum();
-        let kelvin = darkroot_colour::temperature::Temperature::of(spectrum.white().xy().unwrap()).kelvin;
-        let mut sum = 0.0;
-        for (name, file) in CAMERAS {
-            let camera = data::camera(file);
-            let model = store.choose(name).unwrap().profile.model_for(kelvin);
-            let e = errors(&model, &camera, &spectrum, &judge).de2000;
+        let white = spectrum.white().xy().unwrap();
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (name, profile, file) in cameras() {
+            let e = errors(&profile.model_for(white), &data::camera(&file), &spectrum, &judge).de2000;
             println!("{light} {name}: {:.2} {:.2} {:.2}", e.mean, e.p95, e.max);
             assert!(e.mean < most, "{light} {name}: {e:?}");
             sum += e.mean;
+            count += 1.0;
         }
-        println!("{light}: mean over cameras {:.3}", sum / CAMERAS.len() as f64);
+        println!("{light}: mean over cameras {:.3}", sum / count);
+        assert!(sum / count < mean, "{light}: {}", sum / count);
     }
 }
 
@@ -76,32 +75,17 @@ fn lights_between_the_calibrations_are_nearly_as_good() {
 #[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn the_script_makes_the_same_files_again() {
     let spectra = data::folder();
-    // The first of the script's profiles, by the same library call.
+    // One of the script's profiles, by the same library call.
     let request = darkroot::FromSpectra {
         camera: ProfileStore::builtin().choose("Nikon D700").unwrap().profile.camera().clone(),
         sensitivities: spectra.join("cam_rawtoaces_nikon_d700.csv"),
         lights: ["D65", "D50", "A"].map(|l| darkroot::light::find(l).unwrap()).to_vec(),
-        reflectances: [
-            "rawtoaces190",
-            "iset_clothes_vhrel",
-            "iset_dupontpaintchip_vhrel",
-            "iset_food_vhrel",
-            "iset_hair_vhrel",
-            "iset_munsellsamples_vhrel",
-            "iset_nature_vhrel",
-            "iset_objects_vhrel",
-            "iset_africanamerican_vhrel",
-            "iset_caucasian_vhrel",
-            "iset_eastindian_vhrel",
-            "iset_macbethchart",
-        ]
-        .map(|n| spectra.join(format!("refl_{n}.csv")))
-        .to_vec(),
+        reflectances: Vec::new(),
         held_out: ["iset_esserchart", "iset_gretagdigitalcolorsg"]
             .map(|n| spectra.join(format!("refl_{n}.csv")))
             .to_vec(),
         kind: Kind::Spectral,
-        date: "2026-11-22".to_owned(),
+        date: "2026-11-26".to_owned(),
     };
     let text = darkroot_profile::file::format(&darkroot::from_spectra(&request).unwrap());
     let shipped =
