@@ -90,22 +90,14 @@ pub(crate) fn mend(tiff: &Directories<'_>, info: &FrameInfo, counts: &mut Counts
     if info.sample_format != SampleFormat::U16 || !tiff.has(DNG_VERSION) {
         return Ok(());
     }
-    let bits = info.bits_per_sample;
     let differences = tiff.all.iter().any(|d| d.number(tiff, PREDICTOR).is_some_and(|p| p != 1));
-    if info.compression == Compression::Deflate && bits == 8 && differences {
+    if info.compression == Compression::Deflate && info.bits_per_sample == 8 && differences {
         // It sums differences of 8 bits in 16; a table has been applied to sums that are too large.
         if tiff.has(LINEARIZATION_TABLE) {
             let compression = "deflated differences of 8 bits and a table".to_owned();
             return Err(Error::Compression { compression, decoder: "flashraw" });
         }
         mosaic.samples.iter_mut().for_each(|s| *s &= 0xff);
-    }
-    // Adobe's SDK decodes JPEG XL of 9 bits and more to all of 16; files made for it have a white level of that size.
-    let most = (1u32 << bits.min(16)) - 1;
-    let of_sixteen = (9..16).contains(&bits) && info.white_level.max() > most;
-    if info.compression == Compression::JpegXl && of_sixteen && !tiff.has(LINEARIZATION_TABLE) {
-        let scaled = |s: u16| ((u32::from(s) * 65535 + most / 2) / most).min(65535) as u16;
-        mosaic.samples.iter_mut().for_each(|s| *s = scaled(*s));
     }
     Ok(())
 }
