@@ -3,10 +3,13 @@
 #![allow(clippy::unwrap_used)] // A test may stop.
 #![allow(clippy::float_cmp)] // Stored without loss.
 
+mod tiff_file;
+
 use darkroot_colour::RgbSpace;
 use darkroot_encode::{Format, Options};
 use darkroot_photo::{Counts, Layout, Metadata, Picture, PictureSpace, Samples, Size};
 use darkroot_raw::{Decoder, Limits, decode};
+use tiff_file::{Field, tiff_file};
 
 const WIDTH: usize = 150;
 const HEIGHT: usize = 100;
@@ -56,7 +59,7 @@ fn as_float(stream: &[u8]) -> Vec<u8> {
     header.chain(stream[end / 8..].iter().copied()).collect()
 }
 
-/// A DNG of one directory, in either byte order, in tiles or strips of `piece`.
+/// A DNG in either byte order, in tiles or strips of `piece`, without its last bytes.
 fn dng(piece: Size, tiled: bool, big: bool, cut: usize) -> Vec<u8> {
     let mut pieces = Vec::new();
     for y in (0..HEIGHT).step_by(piece.height) {
@@ -65,62 +68,29 @@ fn dng(piece: Size, tiled: bool, big: bool, cut: usize) -> Vec<u8> {
             pieces.push(jpeg_xl((x, y), Size { height, ..piece }));
         }
     }
-    let two = |v: usize| if big { (v as u16).to_be_bytes() } else { (v as u16).to_le_bytes() };
-    let four = |v: usize| if big { (v as u32).to_be_bytes() } else { (v as u32).to_le_bytes() };
-    let lengths: Vec<usize> = pieces.iter().map(Vec::len).collect();
-    let (offsets_tag, lengths_tag) = if tiled { (324, 325) } else { (273, 279) };
-    let mut fields: Vec<(usize, usize, Vec<usize>)> = vec![
-        (254, 4, vec![0]),
-        (256, 4, vec![WIDTH]),
-        (257, 4, vec![HEIGHT]),
-        (258, 3, vec![16; 3]),
-        (259, 3, vec![52546]),
-        (262, 3, vec![34892]),
-        (277, 3, vec![3]),
-        (339, 3, vec![3; 3]),
-        (50706, 1, vec![1, 7, 0, 0]),
-        (50717, 4, vec![1; 3]),
-        (offsets_tag, 4, lengths.clone()),
-        (lengths_tag, 4, lengths.clone()),
+    let mut fields = vec![
+        Field::long(254, 0),
+        Field::long(256, WIDTH),
+        Field::long(257, HEIGHT),
+        Field::shorts(258, &[16; 3]),
+        Field::short(259, 52546),
+        Field::short(262, 34892),
+        Field::short(277, 3),
+        Field::shorts(339, &[3; 3]),
+        Field::bytes(50706, &[1, 7, 0, 0]),
+        Field::longs(50717, &[1; 3]),
     ];
     fields.extend(if tiled {
-        vec![(322, 4, vec![piece.width]), (323, 4, vec![piece.height])]
+        vec![
+            Field::long(322, piece.width),
+            Field::long(323, piece.height),
+            Field::offsets(324),
+            Field::lengths(325),
+        ]
     } else {
-        vec![]
+        vec![Field::long(278, piece.height), Field::offsets(273), Field::lengths(279)]
     });
-    if !tiled {
-        fields.push((278, 4, vec![piece.height]));
-    }
-    fields.sort();
-    let values_at = 8 + 2 + 12 * fields.len() + 4;
-    let size = |kind: usize, n: usize| [0, 1, 1, 2, 4][kind] * n;
-    let long = |f: &(usize, usize, Vec<usize>)| size(f.1, f.2.len()) > 4;
-    let data_at = values_at + fields.iter().filter(|f| long(f)).map(|f| size(f.1, f.2.len())).sum::<usize>();
-    let mut offset = data_at;
-    let offsets: Vec<usize> = lengths.iter().map(|l| (offset, offset += l).0).collect();
-    for field in fields.iter_mut().filter(|f| f.0 == offsets_tag) {
-        field.2.clone_from(&offsets);
-    }
-    let (mut head, mut values) = (if big { b"MM\0\x2a".to_vec() } else { b"II\x2a\0".to_vec() }, Vec::new());
-    head.extend(four(8));
-    head.extend(two(fields.len()));
-    for field in &fields {
-        let bytes: Vec<u8> = match field.1 {
-            1 => field.2.iter().map(|&v| v as u8).collect(),
-            3 => field.2.iter().flat_map(|&v| two(v)).collect(),
-            _ => field.2.iter().flat_map(|&v| four(v)).collect(),
-        };
-        head.extend([two(field.0), two(field.1)].concat());
-        head.extend(four(field.2.len()));
-        if long(field) {
-            head.extend(four(values_at + values.len()));
-            values.extend(bytes);
-        } else {
-            head.extend(bytes.iter().copied().chain([0; 4]).take(4));
-        }
-    }
-    head.extend(four(0));
-    let mut file = [head, values, pieces.concat()].concat();
+    let mut file = tiff_file(&fields, pieces, big);
     file.truncate(file.len() - cut);
     file
 }
