@@ -43,6 +43,20 @@ fn nikon_s_packed_samples_are_read_in_the_order_that_makes_a_picture() {
 }
 
 #[test]
+fn words_of_a_small_frame_are_no_padded_rows() {
+    for width in [32, 40, 64] {
+        let size = Size { width, height: 24 };
+        let capture = expose(&Scene::gradient(size), &Camera::nikon_d750(), &Exposure::default());
+        let Counts::U16(mosaic) = &capture.counts else { panic!("floating point") };
+        assert_eq!(
+            samples(&nef::write(&capture, nef::Storage::Uncompressed).unwrap()),
+            mosaic.samples,
+            "{width}"
+        );
+    }
+}
+
+#[test]
 fn nikon_s_packed_samples_that_fit_no_order_are_refused() {
     let size = Size { width: 300, height: 200 };
     let mut capture = expose(&Scene::still_life(size), &Camera::nikon_d750(), &Exposure::default());
