@@ -3,12 +3,12 @@
 use darkroot_photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Size, Source};
 use flashraw::{
     CorruptionPolicy, DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData,
-    SampleFormat, SensorLayout,
+    SampleFormat,
 };
 
 use crate::dng_mends::Fields;
 use crate::flash_facts::{
-    as_shot, black_level, calibrations, camera, layout, pixel_aspect, rect, white_level,
+    as_shot, black_level, calibrations, camera, compression_name, layout, pixel_aspect, rect, white_level,
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
 use crate::{
@@ -336,23 +336,4 @@ fn describe(
 fn opcode_notes(frame: &RawFrame) -> Vec<String> {
     let first = frame.stats.opcodes.iter().filter(|n| n.starts_with("OpcodeList1: not applied"));
     first.cloned().collect()
-}
-
-fn compression_name(info: &FrameInfo) -> String {
-    use flashraw::Compression as C;
-    match info.compression {
-        C::Uncompressed => "uncompressed".into(),
-        C::LosslessJpeg => "lossless JPEG".into(),
-        C::LossyJpeg => "lossy JPEG".into(),
-        C::Deflate => "deflate".into(),
-        C::JpegXl => "JPEG XL".into(),
-        C::NikonHuffman => "Nikon Huffman".into(),
-        C::NikonHighEfficiency => "Nikon High Efficiency".into(),
-        other => format!("{other:?}"),
-    }
-    .to_owned()
-        + match info.layout {
-            SensorLayout::Foveon => ", Foveon layers",
-            _ => "",
-        }
 }
