@@ -15,6 +15,7 @@ fn main() {
     let there = |below: &str| data.as_ref().is_some_and(|data| data.join(below).exists());
     set("has_broken_files", there("broken"));
     set("has_fixtures", there("fixtures"));
+    set("has_raw_files", there("raw"));
     set("has_labelled_charts", there("charts/labels.json"));
     set("has_spectra", there("spectra"));
     println!("cargo::rerun-if-env-changed=PATH");

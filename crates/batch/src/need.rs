@@ -34,6 +34,8 @@ pub(crate) fn develop(
             Bits::Sixteen => 2,
             Bits::Float => 4,
         };
+    // The embedded JPEG has three colours a pixel; it may be as large as the frame.
+    let (samples, float) = if settings.from_preview { (3 * pixels, false) } else { (samples, float) };
     // flashraw gives 16-bit counts; floating point is kept as such.
     let counts = samples * if float { 4 } else { 2 };
     let decode = file + 2 * counts;

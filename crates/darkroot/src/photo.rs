@@ -64,6 +64,15 @@ impl Photo {
         darkroot_raw::decode(bytes, decoder, limits).map(Self::from)
     }
 
+    /// The embedded JPEG of a raw file, which the camera rendered for display; `None` when it has none. A
+    /// [look](darkroot_develop::Look) has no say in its plan, nor has a profile.
+    ///
+    /// # Errors
+    /// As [`Photo::open`].
+    pub fn open_preview(bytes: &[u8], limits: &Limits) -> Result<Option<Self>, darkroot_raw::Error> {
+        Ok(darkroot_raw::decode_preview(bytes, limits)?.map(Self::from))
+    }
+
     /// What the file says, and its samples.
     pub fn capture(&self) -> &Capture {
         &self.capture
@@ -107,6 +116,9 @@ impl Photo {
         store: &'a ProfileStore,
         settings: &Settings,
     ) -> Result<Option<ChosenProfile<'a>>, Box<crate::Error>> {
+        if self.capture.rendered {
+            return Ok(None);
+        }
         let found = store.for_camera(&self.capture.camera, &settings.profile).map_err(Box::new)?;
         if found.is_some() || settings.profile != ProfileChoice::Automatic {
             return Ok(found);

@@ -97,7 +97,8 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let multipliers = neutral::multipliers(neutral);
     let white = neutral::white_of(analysis, neutral);
     let (colours, model) = colours(analysis, profile, neutral, white, &mut notes);
-    let curve = Curve::of(recipe.look);
+    // What the camera rendered for display has its look already.
+    let curve = Curve::of(recipe.look).filter(|_| !capture.rendered);
     let (space, transfer) = match recipe.output.space {
         OutputSpace::Rgb(space) => (space, space.curve),
         OutputSpace::Camera => (RgbSpace::REC2020, TransferCurve::Linear),

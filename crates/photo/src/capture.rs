@@ -88,6 +88,9 @@ pub struct Capture {
     pub as_shot: Option<AsShot>,
     /// Whether the stored samples are white-balanced already.
     pub balance_applied: bool,
+    /// Whether the samples are no light of the scene but what the camera rendered for display (its embedded JPEG), made
+    /// linear again.
+    pub rendered: bool,
     /// The maker's matrices, none, one or several.
     pub calibrations: Vec<Calibration>,
     /// Gains that the camera applied before storing (DNG AnalogBalance).
@@ -124,6 +127,7 @@ impl Capture {
             white: WhiteLevel([1.0; 3]),
             as_shot: None,
             balance_applied: false,
+            rendered: false,
             calibrations: Vec::new(),
             analog_balance: [1.0; 3],
             baseline_exposure: 0.0,

@@ -43,6 +43,16 @@ pub(crate) fn read(bytes: &[u8], container: &Container<'_>, meta: &RawMetadata) 
     tiff.map_or_else(Metadata::default, |tiff| fields(&tiff))
 }
 
+/// The fields of a TIFF-based file; none of another.
+pub(crate) fn of_container(container: &Container<'_>) -> Metadata {
+    container.tiff.as_ref().map_or_else(Metadata::default, fields)
+}
+
+/// Exif ColorSpace: 1 is sRGB.
+pub(crate) fn colour_space(tiff: &Directories<'_>) -> Option<u64> {
+    tiff.below(tiff.all.first()?, EXIF_IFD)?.number(tiff, tag::COLOUR_SPACE)
+}
+
 /// The wanted fields of the first directory and of those below it.
 fn fields(tiff: &Directories<'_>) -> Metadata {
     let mut metadata = Metadata::default();

@@ -3,14 +3,18 @@
 use darkroot_photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Size, Source};
 use flashraw::{
     CorruptionPolicy, DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData,
-    SampleFormat, SensorLayout,
+    SampleFormat,
 };
 
+use crate::dng_mends::Fields;
 use crate::flash_facts::{
-    as_shot, black_level, calibrations, camera, layout, pixel_aspect, rect, white_level,
+    as_shot, black_level, calibrations, camera, compression_name, layout, pixel_aspect, rect, white_level,
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
-use crate::{Damage, Error, Limits, TooLarge, Unknown, exif, opcode_work, opcodes};
+use crate::{
+    Damage, Error, Limits, TooLarge, Unknown, dng_extras, dng_jxl, dng_mends, exif, nef_packing, opcode_work,
+    opcodes,
+};
 
 /// What [`Source::decoder`] says.
 const NAME: &str = "flashraw 0.1.1";
@@ -29,7 +33,18 @@ pub(crate) fn decode(bytes: &[u8], container: &Container<'_>, limits: &Limits) -
 }
 
 fn decode_named(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Result<Capture, Error> {
+    let fields = container.tiff.as_ref().map_or(Ok(None), Fields::of)?;
+    match fields {
+        Some(fields) => decode_whole(&fields.bytes, container, limits).map(|capture| fields.join(capture)),
+        None => decode_whole(bytes, container, limits),
+    }
+}
+
+fn decode_whole(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Result<Capture, Error> {
     let raw = open(bytes, limits)?;
+    if let Some(capture) = decode_ourselves(bytes, container, &raw, limits)? {
+        return Ok(capture);
+    }
     let float = raw.frame_info().sample_format == SampleFormat::F32;
     let options = DecodeOptions {
         output: if float { OutputFormat::RawF32 } else { OutputFormat::RawU16 },
@@ -49,7 +64,38 @@ fn decode_named(bytes: &[u8], container: &Container<'_>, limits: &Limits) -> Res
         RawPixelData::F32(samples) => Counts::F32(whole(Mosaic { size, layout, samples })?),
         _ => return Err(Error::DecoderFailed { decoder: "flashraw" }),
     };
+    if let Some(tiff) = &container.tiff {
+        dng_mends::mend(tiff, raw.frame_info(), &mut capture.counts)?;
+    }
     Ok(capture)
+}
+
+/// Decodes what flashraw does not read, or reads wrongly; `None` for all others.
+fn decode_ourselves(
+    bytes: &[u8],
+    container: &Container<'_>,
+    raw: &FlashRaw<'_>,
+    limits: &Limits,
+) -> Result<Option<Capture>, Error> {
+    let Some(tiff) = &container.tiff else { return Ok(None) };
+    let info = raw.frame_info();
+    let describe = || describe(bytes, container, raw.metadata(), info);
+    if dng_jxl::is_stored_so(info) {
+        let samples = dng_jxl::decode(tiff, info, limits)?;
+        let mut capture = describe()?;
+        let (size, layout) = (capture.counts.size(), capture.counts.layout().clone());
+        capture.counts = Counts::F32(whole(Mosaic { size, layout, samples })?);
+        if info.opcodes.as_ref().is_some_and(|o| !o.lists[0].is_empty()) {
+            capture.notes.push("OpcodeList1 is not applied to floating-point JPEG XL".to_owned());
+        }
+        return Ok(Some(capture));
+    }
+    let Some((samples, note)) = nef_packing::samples(tiff, raw.metadata(), info)? else { return Ok(None) };
+    let mut capture = describe()?;
+    let (size, layout) = (capture.counts.size(), capture.counts.layout().clone());
+    capture.counts = Counts::U16(whole(Mosaic { size, layout, samples })?);
+    capture.notes.push(note);
+    Ok(Some(capture))
 }
 
 /// Fewest threads on which guessing where Huffman codes begin is faster than reading them one after the other: it takes
@@ -171,7 +217,11 @@ pub(crate) fn error(e: &flashraw::Error) -> Error {
 fn decode_error(e: &flashraw::Error, info: &FrameInfo) -> Error {
     match error(e) {
         Error::Compression { compression, decoder } => {
-            Error::Compression { compression: format!("{} ({compression})", compression_name(info)), decoder }
+            let compression = match info.compression {
+                flashraw::Compression::Uncompressed => compression,
+                _ => format!("{} ({compression})", compression_name(info)),
+            };
+            Error::Compression { compression, decoder }
         }
         other => other,
     }
@@ -234,6 +284,7 @@ fn describe(
     if is_dng && !tiff.is_some_and(|t| t.has(WHITE_LEVEL)) {
         notes.push(format!("the file names no white level; {} is assumed", info.white_level.max()));
     }
+    notes.extend(tiff.map(dng_extras::notes).unwrap_or_default());
     let white = white_level(info, &layout);
     let (calibrations, analog_balance) = calibrations(&info.color_matrices);
     let as_shot = as_shot(meta, info);
@@ -259,6 +310,7 @@ fn describe(
         white,
         as_shot,
         balance_applied: info.white_balance_applied,
+        rendered: false,
         calibrations,
         analog_balance,
         baseline_exposure: meta
@@ -284,23 +336,4 @@ fn describe(
 fn opcode_notes(frame: &RawFrame) -> Vec<String> {
     let first = frame.stats.opcodes.iter().filter(|n| n.starts_with("OpcodeList1: not applied"));
     first.cloned().collect()
-}
-
-fn compression_name(info: &FrameInfo) -> String {
-    use flashraw::Compression as C;
-    match info.compression {
-        C::Uncompressed => "uncompressed".into(),
-        C::LosslessJpeg => "lossless JPEG".into(),
-        C::LossyJpeg => "lossy JPEG".into(),
-        C::Deflate => "deflate".into(),
-        C::JpegXl => "JPEG XL".into(),
-        C::NikonHuffman => "Nikon Huffman".into(),
-        C::NikonHighEfficiency => "Nikon High Efficiency".into(),
-        other => format!("{other:?}"),
-    }
-    .to_owned()
-        + match info.layout {
-            SensorLayout::Foveon => ", Foveon layers",
-            _ => "",
-        }
 }

@@ -4,6 +4,7 @@ use darkroot_colour::{Matrix3, Xy};
 use darkroot_photo::{AsShot, BlackLevel, Calibration, Camera, Cfa, Filter, Layout, Rect, Size, WhiteLevel};
 use flashraw::{
     BlackLevel as FlashBlack, CfaColor, CfaPattern, ColorMatrices, ColorMatrix, FrameInfo, RawMetadata,
+    SensorLayout,
 };
 
 use crate::{Damage, Error, Unknown};
@@ -139,4 +140,24 @@ pub(crate) fn calibrations(matrices: &ColorMatrices) -> (Vec<Calibration>, [f64;
 pub(crate) fn matrix(m: &ColorMatrix) -> Option<Matrix3> {
     (m.rows == 3 && m.values.len() == 9 && m.values.iter().all(|v| v.is_finite()))
         .then(|| Matrix3::from_row_iterator(m.values.iter().map(|&v| f64::from(v))))
+}
+
+/// The compression in words.
+pub(crate) fn compression_name(info: &FrameInfo) -> String {
+    use flashraw::Compression as C;
+    match info.compression {
+        C::Uncompressed => "uncompressed".into(),
+        C::LosslessJpeg => "lossless JPEG".into(),
+        C::LossyJpeg => "lossy JPEG".into(),
+        C::Deflate => "deflate".into(),
+        C::JpegXl => "JPEG XL".into(),
+        C::NikonHuffman => "Nikon Huffman".into(),
+        C::NikonHighEfficiency => "Nikon High Efficiency".into(),
+        other => format!("{other:?}"),
+    }
+    .to_owned()
+        + match info.layout {
+            SensorLayout::Foveon => ", Foveon layers",
+            _ => "",
+        }
 }

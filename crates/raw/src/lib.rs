@@ -20,7 +20,7 @@ pub mod limits;
 pub use limits::Limits;
 
 pub mod preview;
-pub use preview::{Preview, preview};
+pub use preview::{Preview, decode_preview, preview};
 
 pub mod samples;
 pub use samples::samples_hash;
@@ -34,6 +34,12 @@ mod tiff;
 mod flash;
 mod flash_facts;
 mod loader;
+
+mod dng_extras;
+mod dng_jxl;
+mod dng_mends;
+mod nef_packing;
+mod nikon_note;
 
 mod exif;
 mod opcode_work;
@@ -59,6 +65,7 @@ pub enum Decoder {
 /// Anything wrong with the file, as one [`Error`] that says what and what to do. Never panics for input.
 pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture, Error> {
     let container = screen::screen(bytes, limits)?;
+    container.tiff.as_ref().map_or(Ok(()), nikon_note::refuse_high_efficiency)?;
     match decoder {
         Decoder::Flashraw => guarded("flashraw", || flash::decode(bytes, &container, limits)),
         Decoder::Rawloader => {

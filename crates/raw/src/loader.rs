@@ -4,6 +4,7 @@
 use darkroot_photo::{Capture, Counts, Layout, Mosaic, Size};
 use rawloader::RawImageData;
 
+use crate::dng_mends::Fields;
 use crate::screen::{DNG_VERSION, LINEARIZATION_TABLE};
 use crate::tiff::Directories;
 use crate::{Error, Limits, TooLarge, Unknown};
@@ -56,7 +57,9 @@ fn known_wrong(bytes: &[u8], header: &Capture) -> Result<Option<&'static str>, E
     let bits = header.source.bits;
     let packed = bits < 16 && bits != 8 && header.source.compression == "uncompressed";
     let big_endian = bytes.starts_with(b"MM") && header.source.compression == "uncompressed";
-    Ok(if tiff.has(LINEARIZATION_TABLE) {
+    Ok(if Fields::of(&tiff)?.is_some() {
+        Some("it takes rows and columns in fields for a picture")
+    } else if tiff.has(LINEARIZATION_TABLE) {
         Some("it does not apply this file's linearisation table")
     } else if packed && bits == 10 {
         Some("it misreads packed 10-bit samples")

@@ -23,15 +23,42 @@ pub(crate) fn parse(list: &[u8], name: &str, notes: &mut Vec<String>) -> Vec<Cor
             notes.push(format!("{name} is cut short; the rest of it is not applied"));
             break;
         };
-        match correction(id, &mut Reader(body)) {
-            Some(correction) => corrections.push(correction),
-            None => {
-                let weight = if flags & OPTIONAL != 0 { "optional" } else { "mandatory" };
-                notes.push(format!("{name}: the {weight} correction {} is not applied", opcode_name(id)));
+        let why = match correction(id, &mut Reader(body)) {
+            Some(correction) => {
+                corrections.push(correction);
+                continue;
             }
-        }
+            None if is_whole(id, &mut Reader(body)).unwrap_or(false) => "is not applied",
+            None => "is damaged and left out",
+        };
+        let weight = if flags & OPTIONAL != 0 { "optional" } else { "mandatory" };
+        notes.push(format!("{name}: the {weight} correction {} {why}", opcode_name(id)));
     }
     corrections
+}
+
+/// Whether an opcode that is not applied has all that it should have; of those that nobody knows, nobody can say.
+fn is_whole(id: u32, body: &mut Reader<'_>) -> Option<bool> {
+    let length = body.0.len();
+    Some(match id {
+        // Sets of coefficients, and the centre.
+        2 => length == 4 + 32 * body.u32()? as usize + 16,
+        // A constant and the phase of the filters.
+        4 => length == 8,
+        // Phase, points and rectangles.
+        5 => {
+            let (_phase, points, rectangles) = (body.u32()?, body.u32()? as usize, body.u32()? as usize);
+            Some(length) == points.checked_mul(8)?.checked_add(rectangles.checked_mul(16)?)?.checked_add(12)
+        }
+        // A rectangle.
+        6 => {
+            let (top, left, bottom, right) = (body.u32()?, body.u32()?, body.u32()?, body.u32()?);
+            length == 16 && top < bottom && left < right
+        }
+        // Those that are applied where they are whole.
+        1 | 3 | 7..=13 => false,
+        _ => true,
+    })
 }
 
 fn opcode_name(id: u32) -> String {
@@ -42,6 +69,13 @@ fn opcode_name(id: u32) -> String {
         4 => "FixBadPixelsConstant".into(),
         5 => "FixBadPixelsList".into(),
         6 => "TrimBounds".into(),
+        7 => "MapTable".into(),
+        8 => "MapPolynomial".into(),
+        9 => "GainMap".into(),
+        10 => "DeltaPerRow".into(),
+        11 => "DeltaPerColumn".into(),
+        12 => "ScalePerRow".into(),
+        13 => "ScalePerColumn".into(),
         14 => "WarpRectilinear2".into(),
         other => format!("number {other}"),
     }
@@ -191,6 +225,37 @@ mod tests {
         let parsed = parse(&list(&[(99, 0, vec![]), (3, 0, vignette)]), "OpcodeList3", &mut notes);
         assert_eq!(parsed.len(), 1);
         assert_eq!(notes, ["OpcodeList3: the mandatory correction number 99 is not applied"]);
+    }
+
+    #[test]
+    fn every_opcode_is_read_and_one_that_is_not_applied_or_damaged_is_named() {
+        let words = |numbers: &[u32]| numbers.iter().flat_map(|n| n.to_be_bytes()).collect::<Vec<u8>>();
+        let of_length = |count: u32, length: usize| [words(&[count]), vec![0; length - 4]].concat();
+        for (id, whole, name) in [
+            (2, of_length(1, 52), "WarpFisheye"),
+            (4, words(&[0, 1]), "FixBadPixelsConstant"),
+            (5, words(&[0, 1, 1, 7, 7, 1, 1, 2, 2]), "FixBadPixelsList"),
+            (6, words(&[0, 0, 9, 9]), "TrimBounds"),
+        ] {
+            let said = |body: Vec<u8>| {
+                let mut notes = Vec::new();
+                assert!(parse(&list(&[(id, 1, body)]), "OpcodeList3", &mut notes).is_empty());
+                notes
+            };
+            assert_eq!(
+                said(whole.clone()),
+                [format!("OpcodeList3: the optional correction {name} is not applied")]
+            );
+            let damaged = [format!("OpcodeList3: the optional correction {name} is damaged and left out")];
+            assert_eq!(said(whole[..whole.len() - 1].to_vec()), damaged);
+            assert_eq!(said(Vec::new()), damaged);
+        }
+        for id in (7..=13).chain([1, 3]) {
+            let mut notes = Vec::new();
+            assert!(parse(&list(&[(id, 0, vec![0; 3])]), "OpcodeList2", &mut notes).is_empty());
+            let damaged = format!("the mandatory correction {} is damaged", opcode_name(id));
+            assert!(notes.len() == 1 && notes[0].contains(&damaged), "{notes:?}");
+        }
     }
 
     #[test]

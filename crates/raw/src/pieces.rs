@@ -6,18 +6,57 @@
 use crate::tiff::{Directories, Directory};
 use crate::{Damage, Error, Limits, TooLarge, jpeg_frame, jxl_frame};
 
-mod tag {
-    pub(super) const NEW_SUBFILE_TYPE: u16 = 0x00fe;
-    pub(super) const IMAGE_WIDTH: u16 = 0x0100;
-    pub(super) const IMAGE_LENGTH: u16 = 0x0101;
-    pub(super) const STRIP_OFFSETS: u16 = 0x0111;
-    pub(super) const SAMPLES_PER_PIXEL: u16 = 0x0115;
-    pub(super) const ROWS_PER_STRIP: u16 = 0x0116;
-    pub(super) const STRIP_BYTE_COUNTS: u16 = 0x0117;
-    pub(super) const TILE_WIDTH: u16 = 0x0142;
-    pub(super) const TILE_LENGTH: u16 = 0x0143;
-    pub(super) const TILE_OFFSETS: u16 = 0x0144;
-    pub(super) const TILE_BYTE_COUNTS: u16 = 0x0145;
+pub(crate) mod tag {
+    pub(crate) const NEW_SUBFILE_TYPE: u16 = 0x00fe;
+    pub(crate) const IMAGE_WIDTH: u16 = 0x0100;
+    pub(crate) const IMAGE_LENGTH: u16 = 0x0101;
+    pub(crate) const BITS_PER_SAMPLE: u16 = 0x0102;
+    pub(crate) const COMPRESSION: u16 = 0x0103;
+    pub(crate) const STRIP_OFFSETS: u16 = 0x0111;
+    pub(crate) const SAMPLES_PER_PIXEL: u16 = 0x0115;
+    pub(crate) const ROWS_PER_STRIP: u16 = 0x0116;
+    pub(crate) const STRIP_BYTE_COUNTS: u16 = 0x0117;
+    pub(crate) const TILE_WIDTH: u16 = 0x0142;
+    pub(crate) const TILE_LENGTH: u16 = 0x0143;
+    pub(crate) const TILE_OFFSETS: u16 = 0x0144;
+    pub(crate) const TILE_BYTE_COUNTS: u16 = 0x0145;
+    pub(crate) const SAMPLE_FORMAT: u16 = 0x0153;
+    pub(crate) const ROW_INTERLEAVE: u16 = 0xc71f;
+    pub(crate) const COLUMN_INTERLEAVE: u16 = 0xcd43;
+}
+
+/// Strips or tiles, row by row; a strip is a tile as wide as the picture.
+#[derive(Debug)]
+pub(crate) struct Grid {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    /// Offset and length of each.
+    pub(crate) pieces: Vec<(usize, usize)>,
+}
+
+impl Grid {
+    /// The strips or tiles of a picture; `None` where there are too few, or they have no size.
+    pub(crate) fn of(
+        tiff: &Directories<'_>,
+        directory: &Directory,
+        width: usize,
+        height: usize,
+    ) -> Option<Self> {
+        let number = |tag| directory.number(tiff, tag).and_then(|n| usize::try_from(n).ok());
+        let tile = number(tag::TILE_WIDTH).zip(number(tag::TILE_LENGTH));
+        let strip = (width, number(tag::ROWS_PER_STRIP).unwrap_or(height).min(height));
+        let (tile_width, tile_height) = tile.unwrap_or(strip);
+        let pieces = pieces(tiff, directory);
+        let wanted = width.div_ceil(tile_width.max(1)).saturating_mul(height.div_ceil(tile_height.max(1)));
+        let whole = tile_width > 0 && tile_height > 0 && pieces.len() >= wanted;
+        whole.then_some(Self { width: tile_width, height: tile_height, pieces })
+    }
+
+    /// The bytes of a strip or tile; `None` where they are not in the file.
+    pub(crate) fn piece<'a>(&self, tiff: &Directories<'a>, i: usize) -> Option<&'a [u8]> {
+        let &(offset, length) = self.pieces.get(i)?;
+        tiff.bytes().get(offset..offset.checked_add(length)?)
+    }
 }
 
 /// How many times more samples than its place a JPEG may hold: Canon's smaller raw files have six where the directory

@@ -197,6 +197,21 @@ impl<'a> Directories<'a> {
         })
     }
 
+    /// Puts a number in place of the first of every entry with this tag, in a copy of the file.
+    pub(crate) fn overwrite(&self, tag: u16, number: u16, copy: &mut [u8]) {
+        for entry in self.all.iter().flat_map(|d| &d.entries).filter(|e| e.tag == tag) {
+            let size = size_of_kind(entry.kind).min(4) as usize;
+            let long = if self.little_endian {
+                u32::from(number).to_le_bytes()
+            } else {
+                (u32::from(number) << (8 * (4 - size))).to_be_bytes()
+            };
+            if let Some(place) = copy.get_mut(entry.offset..entry.offset.saturating_add(size)) {
+                place.copy_from_slice(&long[..size]);
+            }
+        }
+    }
+
     /// The whole file.
     pub(crate) fn bytes(&self) -> &'a [u8] {
         self.bytes

@@ -12,7 +12,8 @@ use darkroot_simulate::{Camera, Exposure, Scene, camera, dng, nef, samples};
 
 const USAGE: &str = "make_raw --format nef|dng --width W --height H --out PATH
   [--scene still-life|flat|ramp|gradient] [--cfa RGGB|...|xtrans] [--linear] [--bits 12|14]
-  [--storage uncompressed|jpeg-strip|jpeg-tiles|lossless] [--stops S] [--no-noise]
+  [--storage uncompressed|jpeg-strip|jpeg-tiles|lossless|lossy|lossy-split|packed-highest|packed-lowest]
+  [--stops S] [--no-noise]
   [--kelvin K (daylight, 4000 to 25000) | --tungsten] [--orientation 1..8] [--masked COLUMNSxROWS]
   [--counts PATH (the samples, as 16-bit little-endian numbers)]";
 
@@ -58,6 +59,10 @@ fn run(args: &Args) -> Result<(), String> {
     let capture = expose(&scene, &camera, &args.exposure);
     let bytes = match (args.format.as_str(), args.storage.as_str()) {
         ("nef", "uncompressed") => nef::write(&capture, nef::Storage::Uncompressed),
+        ("nef", "packed-highest") => nef::write(&capture, nef::Storage::PackedHighestFirst),
+        ("nef", "packed-lowest") => nef::write(&capture, nef::Storage::PackedLowestFirst),
+        ("nef", "lossy") => nef::write(&capture, nef::Storage::Lossy),
+        ("nef", "lossy-split") => nef::write(&capture, nef::Storage::LossyWithSplit),
         ("nef", _) => nef::write(&capture, nef::Storage::Lossless),
         (_, "uncompressed") => Some(dng::write(&capture, dng::Storage::Uncompressed)),
         (_, "jpeg-strip") => Some(dng::write(&capture, dng::Storage::JpegStrip)),

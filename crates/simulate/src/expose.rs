@@ -120,6 +120,7 @@ pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
         white: WhiteLevel([f32::from(camera.white); 3]),
         as_shot: Some(AsShot::Neutral(camera.neutral(light))),
         balance_applied: false,
+        rendered: false,
         calibrations: vec![
             camera.calibration(&Spectrum::illuminant_a(), 2856.0),
             camera.calibration(&Spectrum::daylight(6504.0), 6504.0),

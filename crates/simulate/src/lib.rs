@@ -30,6 +30,7 @@ pub mod samples;
 mod bits;
 mod exact;
 mod ljpeg;
+mod nef_huffman;
 mod preview;
 mod random;
 mod still_life;

@@ -1,24 +1,48 @@
 //! Captures as Nikon NEF bytes: TIFF with a maker note of type 3.
 //!
-//! Structure as ExifTool documents it; the trees of the lossless compression are constants of the format.
+//! Structure as ExifTool documents it; compression stands in `nef_huffman.rs`.
 
 use darkroot_photo::metadata::Value;
 use darkroot_photo::{AsShot, Capture, Cfa, Counts, Layout, Mosaic};
 
-use crate::bits::{Bits, category};
+use crate::bits::Bits;
 use crate::dng::{code, exif_directory, preview_directory};
-use crate::tag;
 use crate::tiff_writer::{Ifd, file};
+use crate::{nef_huffman, tag};
 
 /// How the samples are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Storage {
-    /// 14 bits in 16-bit words, or 12 bits packed.
+    /// 14 bits in 16-bit words, or 12 bits packed from the highest bit down.
     Uncompressed,
+    /// Packed from the highest bit down.
+    PackedHighestFirst,
+    /// Packed from the lowest bit up.
+    PackedLowestFirst,
     /// Nikon's lossless compression.
     #[default]
     Lossless,
+    /// Nikon's lossy compression: samples are rounded to the steps of a curve, then stored without loss.
+    Lossy,
+    /// Nikon's lossy compression of later cameras: below a row, large differences lose their last bits too.
+    LossyWithSplit,
 }
+
+impl Storage {
+    /// Number of the maker note's compression, as ExifTool documents it.
+    fn number(self) -> u16 {
+        match self {
+            Self::Uncompressed | Self::PackedHighestFirst | Self::PackedLowestFirst => 2,
+            Self::Lossless => 3,
+            Self::Lossy => 1,
+            Self::LossyWithSplit => 4,
+        }
+    }
+}
+
+/// High Efficiency in the maker note, and the first bytes of a JPEG XS (ISO/IEC 21122-1), which it is.
+const HIGH_EFFICIENCY: u16 = 13;
+const JPEG_XS: &[u8] = &[0xff, 0x10, 0xff, 0x50];
 
 /// Tags of the Nikon maker note.
 mod note {
@@ -37,23 +61,43 @@ mod note {
     pub(super) const SHUTTER_COUNT: u16 = 0x00a7;
 }
 
-/// Code lengths of the lossless trees, as numbers of codes of 1, 2, 3, ... bits, and their symbols in order.
-const TREE_12: ([u8; 8], [u8; 13]) = ([0, 1, 4, 2, 3, 1, 2, 0], [5, 4, 6, 3, 7, 2, 8, 1, 9, 0, 10, 11, 12]);
-const TREE_14: ([u8; 8], [u8; 15]) =
-    ([0, 1, 4, 2, 2, 3, 1, 2], [7, 6, 8, 5, 9, 4, 10, 3, 11, 12, 2, 0, 1, 13, 14]);
-
 /// The bytes of a NEF file, with a small RGB preview; `None` unless the capture is what Nikon cameras store:
 /// integer samples of 12 or 14 bits under a 2x2 filter array, of even width. NEF has no place for saturation,
 /// colour matrices, a masked border or a crop; decoders know them by the model.
 pub fn write(capture: &Capture, storage: Storage) -> Option<Vec<u8>> {
+    let (mosaic, cfa) = storable(capture)?;
+    let raw = raw_directory(mosaic, cfa, capture.source.bits, storage);
+    Some(whole(capture, vec![raw], maker_note(capture, storage)))
+}
+
+/// A NEF whose samples nobody can read, as High Efficiency is, with a JPEG in it as large as the picture; `None` as
+/// [`write()`]. There are no samples in it at all, only the mark by which their codec is known.
+pub fn write_high_efficiency(capture: &Capture, jpeg: Vec<u8>) -> Option<Vec<u8>> {
+    let (mosaic, cfa) = storable(capture)?;
+    let mut raw = raw_directory(mosaic, cfa, capture.source.bits, Storage::Lossless);
+    raw.pieces(tag::STRIP_OFFSETS, tag::STRIP_BYTE_COUNTS, vec![[JPEG_XS, &[0; 4096]].concat()]);
+    let mut large = Ifd::default();
+    large.longs(tag::NEW_SUBFILE_TYPE, &[1]).shorts(tag::COMPRESSION, &[6]).pieces(
+        tag::JPEG_INTERCHANGE_FORMAT,
+        tag::JPEG_INTERCHANGE_FORMAT_LENGTH,
+        vec![jpeg],
+    );
+    let mut note = note_directory(capture);
+    note.shorts(note::COMPRESSION, &[HIGH_EFFICIENCY]);
+    Some(whole(capture, vec![large, raw], note_bytes(&note)))
+}
+
+/// The mosaic of a capture that a NEF can hold.
+fn storable(capture: &Capture) -> Option<(&Mosaic<u16>, &Cfa)> {
     let bits = capture.source.bits;
     let Counts::U16(mosaic) = &capture.counts else { return None };
     let Layout::Cfa(cfa) = &mosaic.layout else { return None };
     let fits = matches!(bits, 12 | 14) && mosaic.samples.iter().all(|&s| s >> bits == 0);
-    if !fits || (cfa.width(), cfa.height()) != (2, 2) || !mosaic.size.width.is_multiple_of(2) {
-        return None;
-    }
+    let even = (cfa.width(), cfa.height()) == (2, 2) && mosaic.size.width.is_multiple_of(2);
+    (fits && even).then_some((mosaic, cfa))
+}
 
+fn whole(capture: &Capture, below: Vec<Ifd>, note: Vec<u8>) -> Vec<u8> {
     let mut root = Ifd::default();
     preview_directory(&mut root, capture);
     root.fields(
@@ -67,20 +111,23 @@ pub fn write(capture: &Capture, storage: Storage) -> Option<Vec<u8>> {
     .text(tag::MODEL, &capture.camera.model)
     .shorts(tag::ORIENTATION, &[capture.orientation.exif()]);
     let mut exif = exif_directory(capture);
-    exif.put(tag::MAKER_NOTE, Value::Undefined(maker_note(capture, storage)));
-    root.directories(tag::SUB_IFDS, vec![raw_directory(mosaic, cfa, bits, storage)])
-        .directories(tag::EXIF_IFD, vec![exif]);
-    Some(file(&root))
+    exif.put(tag::MAKER_NOTE, Value::Undefined(note));
+    root.directories(tag::SUB_IFDS, below).directories(tag::EXIF_IFD, vec![exif]);
+    file(&root)
 }
 
 fn raw_directory(mosaic: &Mosaic<u16>, cfa: &Cfa, bits: u8, storage: Storage) -> Ifd {
     let samples = &mosaic.samples;
     let width = mosaic.size.width;
     let (compression, bytes) = match (storage, bits) {
-        (Storage::Lossless, 12) => (34713, huffman(samples, width, &codes(&TREE_12))),
-        (Storage::Lossless, _) => (34713, huffman(samples, width, &codes(&TREE_14))),
-        (Storage::Uncompressed, 12) => (1, packed(samples)),
-        (Storage::Uncompressed, _) => (1, samples.iter().flat_map(|s| s.to_le_bytes()).collect()),
+        (Storage::Uncompressed, 14) => (1, samples.iter().flat_map(|s| s.to_le_bytes()).collect()),
+        (Storage::Uncompressed | Storage::PackedHighestFirst, _) => (1, highest_first(samples, width, bits)),
+        (Storage::PackedLowestFirst, _) => (1, lowest_first(samples, width, bits)),
+        (Storage::Lossless, _) => (34713, nef_huffman::lossless(samples, width, bits)),
+        (Storage::Lossy, _) => (34713, nef_huffman::lossy(samples, width, bits, None)),
+        (Storage::LossyWithSplit, _) => {
+            (34713, nef_huffman::lossy(samples, width, bits, Some(split_row(mosaic.size.height))))
+        }
     };
     let filters = (0..4).map(|i| code(cfa.at(i % 2, i / 2))).collect();
     let mut ifd = Ifd::default();
@@ -103,8 +150,52 @@ fn raw_directory(mosaic: &Mosaic<u16>, cfa: &Cfa, bits: u8, storage: Storage) ->
     ifd
 }
 
+/// The row from which on large differences lose bits: cameras store a few hundred above it.
+fn split_row(height: usize) -> usize {
+    height / 4
+}
+
+/// Each row by itself, the most significant bit first.
+fn highest_first(samples: &[u16], width: usize, bits: u8) -> Vec<u8> {
+    let row = |row: &[u16]| {
+        let mut packed = Bits::default();
+        row.iter().for_each(|&s| packed.push(u32::from(s), bits.into()));
+        packed.finish(false)
+    };
+    samples.chunks(width.max(1)).flat_map(row).collect()
+}
+
+/// Each row by itself, the least significant bit first: the same with all bits of samples and bytes turned round.
+fn lowest_first(samples: &[u16], width: usize, bits: u8) -> Vec<u8> {
+    let turned: Vec<u16> = samples.iter().map(|s| s.reverse_bits() >> (16 - bits)).collect();
+    highest_first(&turned, width, bits).into_iter().map(u8::reverse_bits).collect()
+}
+
 /// The maker note of type 3: a name, a version, and a TIFF file of its own.
 fn maker_note(capture: &Capture, storage: Storage) -> Vec<u8> {
+    let mut ifd = note_directory(capture);
+    ifd.shorts(note::COMPRESSION, &[storage.number()]);
+    let bits = capture.source.bits;
+    let table = match storage {
+        Storage::Lossless => Some(nef_huffman::lossless_table()),
+        Storage::Lossy => Some(nef_huffman::lossy_table(bits, None)),
+        Storage::LossyWithSplit => {
+            Some(nef_huffman::lossy_table(bits, Some(split_row(capture.counts.size().height))))
+        }
+        _ => None,
+    };
+    if let Some(table) = table {
+        ifd.put(note::LINEARIZATION, Value::Undefined(table));
+    }
+    note_bytes(&ifd)
+}
+
+fn note_bytes(ifd: &Ifd) -> Vec<u8> {
+    [b"Nikon\0\x02\x11\0\0".to_vec(), file(ifd)].concat()
+}
+
+/// What the note says of every file.
+fn note_directory(capture: &Capture) -> Ifd {
     let balance = match capture.as_shot {
         Some(AsShot::Neutral([r, g, b])) => [g / r, g / b, 1.0, 1.0],
         _ => [1.0; 4],
@@ -124,81 +215,6 @@ fn maker_note(capture: &Capture, storage: Storage) -> Vec<u8> {
         .shorts(note::BLACK_LEVEL, &black)
         .put(note::LENS_TYPE, Value::Bytes(vec![6])) // D and G: no aperture ring.
         .fractions(note::LENS, &[85.0, 85.0, 1.8, 1.8])
-        .shorts(note::COMPRESSION, &[if storage == Storage::Lossless { 3 } else { 2 }])
         .longs(note::SHUTTER_COUNT, &[1]);
-    if storage == Storage::Lossless {
-        ifd.put(note::LINEARIZATION, Value::Undefined(linearization()));
-    }
-    [b"Nikon\0\x02\x11\0\0".to_vec(), file(&ifd)].concat()
-}
-
-/// Version 0x46 0x30 (lossless), the first predictions of the four filters, and a curve of no points.
-fn linearization() -> Vec<u8> {
-    let mut table = vec![0x46, 0x30];
-    table.extend([FIRST_PREDICTION; 4].iter().flat_map(|p| p.to_le_bytes()));
-    table.resize(LINEARIZATION_BYTES, 0);
-    table
-}
-
-/// What the first two samples of the first two rows are predicted to be.
-const FIRST_PREDICTION: u16 = 2048;
-/// Readers take this much for granted.
-const LINEARIZATION_BYTES: usize = 640;
-
-/// Code and length of each symbol of a tree, in order of length.
-fn codes<const N: usize>((counts, symbols): &([u8; 8], [u8; N])) -> [(u32, u32); 16] {
-    let mut codes = [(0, 0); 16];
-    let mut next = 0;
-    let mut symbols = symbols.iter();
-    for (&count, length) in counts.iter().zip(1..) {
-        for &symbol in symbols.by_ref().take(usize::from(count)) {
-            codes[usize::from(symbol)] = (next, length);
-            next += 1;
-        }
-        next <<= 1;
-    }
-    codes
-}
-
-/// Each sample as its difference to the one two columns to the left; the first two of a row to those two rows
-/// above.
-fn huffman(samples: &[u16], width: usize, codes: &[(u32, u32); 16]) -> Vec<u8> {
-    let mut bits = Bits::default();
-    let mut first = [[i32::from(FIRST_PREDICTION); 2]; 2];
-    for (y, row) in samples.chunks_exact(width.max(1)).enumerate() {
-        let mut prediction = first[y % 2];
-        for (x, &sample) in row.iter().enumerate() {
-            let sample = i32::from(sample);
-            let (symbol, extra) = category(sample - prediction[x % 2]);
-            let (code, length) = codes[usize::from(symbol)];
-            bits.push(code, length);
-            bits.push(extra, u32::from(symbol));
-            prediction[x % 2] = sample;
-            if x < 2 {
-                first[y % 2][x] = sample;
-            }
-        }
-    }
-    bits.finish(false)
-}
-
-/// 12 bits a sample, most significant bit first.
-fn packed(samples: &[u16]) -> Vec<u8> {
-    let mut bits = Bits::default();
-    samples.iter().for_each(|&s| bits.push(u32::from(s), 12));
-    bits.finish(false)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_trees_have_a_code_for_every_size_of_error_and_no_room_left() {
-        for (codes, symbols) in [(codes(&TREE_12), 13), (codes(&TREE_14), 15)] {
-            let space: f64 = codes.iter().filter(|c| c.1 > 0).map(|c| 0.5f64.powi(c.1 as i32)).sum();
-            assert!((space - 1.0).abs() < 1e-12);
-            assert!(codes[..symbols].iter().all(|c| c.1 > 0));
-        }
-    }
+    ifd
 }

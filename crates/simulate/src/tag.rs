@@ -22,6 +22,8 @@ pub(crate) const TILE_OFFSETS: u16 = 324;
 pub(crate) const TILE_BYTE_COUNTS: u16 = 325;
 pub(crate) const SUB_IFDS: u16 = 330;
 pub(crate) const SAMPLE_FORMAT: u16 = 339;
+pub(crate) const JPEG_INTERCHANGE_FORMAT: u16 = 513;
+pub(crate) const JPEG_INTERCHANGE_FORMAT_LENGTH: u16 = 514;
 
 pub(crate) const CFA_REPEAT_PATTERN_DIM: u16 = 33421;
 pub(crate) const CFA_PATTERN: u16 = 33422;

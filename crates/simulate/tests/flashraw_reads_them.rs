@@ -88,6 +88,26 @@ fn every_storage_of_nef_gives_back_the_samples() {
 }
 
 #[test]
+fn lossy_nef_gives_back_what_the_curve_and_dropped_bits_leave() {
+    for (camera, dropped) in [(Camera::nikon_d750(), 1 << 5), (Camera::nikon_d750_12_bit(), 1 << 5)] {
+        let capture = capture(&camera);
+        let Counts::U16(mosaic) = &capture.counts else { panic!("counts are integers") };
+        // A step of the curve is three counts at most, and so is each of the bits that are dropped.
+        for (storage, most) in [(nef::Storage::Lossy, 3), (nef::Storage::LossyWithSplit, 3 * dropped)] {
+            let raw = FlashRaw::open(nef::write(&capture, storage).unwrap()).unwrap();
+            let frame = raw.decode(DecodeOptions::default()).unwrap();
+            let pairs = || frame.as_u16().unwrap().iter().zip(&mosaic.samples);
+            let (above, below) = (pairs().take(mosaic.samples.len() / 5), pairs());
+            assert!(above.clone().all(|(a, b)| a.abs_diff(*b) <= 3), "{storage:?}");
+            assert!(below.clone().all(|(a, b)| a.abs_diff(*b) <= most), "{storage:?}");
+            // Something is lost, and little.
+            let sum: u64 = below.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+            assert!(sum > 0 && sum < 12 * mosaic.samples.len() as u64, "{storage:?}: {sum}");
+        }
+    }
+}
+
+#[test]
 fn every_filter_array_arrives() {
     for layout in [filters("RGGB"), filters("GRBG"), filters("GBRG"), filters("BGGR"), x_trans()] {
         for masked in [(0, 0), (5, 3)] {

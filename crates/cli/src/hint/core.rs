@@ -64,7 +64,9 @@ fn file(error: &darkroot::Error) -> Option<&'static str> {
 fn raw(error: &darkroot_raw::Error) -> Option<&'static str> {
     use darkroot_raw::Error as E;
     match error {
-        E::Compression { .. } => Some("`darkroot inspect --preview OUT.jpg` writes it"),
+        E::Compression { .. } => {
+            Some("`--from-preview` develops it, and `darkroot inspect --preview OUT.jpg` writes it as it is")
+        }
         E::WrongDecoder { .. } => Some("leave out `--decoder rawloader`"),
         E::DecoderFailed { .. } => Some("`--decoder` takes flashraw or rawloader"),
         _ => None,
@@ -76,6 +78,10 @@ fn settings(error: &SettingsError) -> Option<String> {
         SettingsError::Bits { .. } => "choose another `--bits` or format".to_owned(),
         SettingsError::LinearInEightBits { .. } => "or choose another `--look`".to_owned(),
         SettingsError::CurveOnLinear { space } => format!("add `--space {space}-linear`"),
+        SettingsError::Preview { settings } => {
+            let options: Vec<String> = settings.iter().map(|name| format!("`--{name}`")).collect();
+            format!("leave out {} or `--from-preview`", options.join(", "))
+        }
         SettingsError::CameraNeedsFloat => "or leave out `--space camera`".to_owned(),
         SettingsError::Engine { settings } => {
             let options: Vec<String> = settings.iter().map(|name| format!("`--{name}`")).collect();

@@ -6,6 +6,7 @@ mod answers;
 mod batch;
 mod broken;
 mod chart;
+mod embedded;
 mod engines;
 mod export;
 mod formats;

@@ -89,8 +89,7 @@ pub fn develop_bytes(
     refuse_existing(job, settings)?;
     let format = format_of(output, settings);
     let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
-    let photo = Photo::open_with(&read()?, settings.decoder, &settings.limits)
-        .map_err(|source| Error::Raw { path: input.clone(), source })?;
+    let photo = open(input, &read()?, settings)?;
 
     control.step(Step::Develop);
     let mut notes = photo.capture().notes.clone();
@@ -140,6 +139,16 @@ pub fn develop_bytes(
         seconds: start.elapsed().as_secs_f64(),
         ..report
     })
+}
+
+/// The samples of a raw file, or its embedded JPEG where that is asked for.
+fn open(input: &Path, bytes: &[u8], settings: &Settings) -> Result<Photo, Error> {
+    let of_raw = |source| Error::Raw { path: input.to_owned(), source };
+    if settings.from_preview {
+        let photo = Photo::open_preview(bytes, &settings.limits).map_err(of_raw)?;
+        return photo.ok_or_else(|| Error::NoPreview { path: input.to_owned() });
+    }
+    Photo::open_with(bytes, settings.decoder, &settings.limits).map_err(of_raw)
 }
 
 /// Why no picture was written.
@@ -274,7 +283,8 @@ fn metadata_for(capture: &Capture, space: &PictureSpace) -> Metadata {
     const SRGB: u16 = 1;
     const UNCALIBRATED: u16 = 65535;
     let mut metadata = capture.metadata.clone();
-    metadata.set(Directory::Image, tag::SOFTWARE, Value::Text(format!("Darkroot {VERSION}")));
+    let source = if capture.rendered { ", from the camera's embedded JPEG" } else { "" };
+    metadata.set(Directory::Image, tag::SOFTWARE, Value::Text(format!("Darkroot {VERSION}{source}")));
     let srgb = *space == PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
     let space = if srgb { SRGB } else { UNCALIBRATED };
     metadata.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));

@@ -31,6 +31,8 @@ pub struct Report {
     pub camera: String,
     /// Decoder and version.
     pub decoder: String,
+    /// Whether the picture was made from the embedded JPEG, and not from the sensor's samples.
+    pub from_preview: bool,
     /// "darkroot" or "imagepipe".
     pub engine: String,
     /// What gave the colours, in words.
@@ -65,6 +67,7 @@ pub(super) fn colours(plan: &Plan, capture: &Capture, chosen: Option<&ChosenProf
             let light = profile.known_camera().map_or_else(lights, |_| "its sensitivities".to_owned());
             format!("profile for {} ({light})", profile.camera().name())
         }
+        _ if capture.rendered => "the camera's own (embedded JPEG)".to_owned(),
         (Colours::CameraMatrix, _) if capture.source.format == "DNG" => "matrix in the file".to_owned(),
         (Colours::CameraMatrix, _) => "camera matrix".to_owned(),
         (Colours::Grey, _) => "monochrome".to_owned(),
@@ -90,6 +93,7 @@ pub(super) fn blank_report(
         height: size.height,
         camera: capture.camera.name(),
         decoder: capture.source.decoder.clone(),
+        from_preview: capture.rendered,
         engine: String::new(),
         colours: String::new(),
         profile: None,

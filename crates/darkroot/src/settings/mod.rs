@@ -70,6 +70,8 @@ pub struct Settings {
     pub engine: Engine,
     /// Which decoder.
     pub decoder: Decoder,
+    /// Whether the embedded JPEG is developed in place of the samples.
+    pub from_preview: bool,
     /// How much a file may ask for.
     pub limits: Limits,
     /// Whether existing outputs are replaced.
@@ -112,6 +114,12 @@ pub enum SettingsError {
     /// Camera RGB in an integer format.
     #[error("camera RGB is for measurement: write a 32-bit .tif or an .exr file")]
     CameraNeedsFloat,
+    /// The embedded JPEG, where light of the scene is asked for.
+    #[error("the embedded JPEG is the camera's own rendering, and no scene light as {} asks for", settings.join(", "))]
+    Preview {
+        /// Names of the settings that ask for it.
+        settings: Vec<&'static str>,
+    },
     /// Options that the second engine does not have.
     #[error("imagepipe has its own fixed rendering in sRGB and does not heed {}", settings.join(", "))]
     Engine {
@@ -171,8 +179,23 @@ impl Settings {
         if self.engine == Engine::Imagepipe {
             check_imagepipe(self, &recipe)?;
         }
+        if self.from_preview {
+            check_preview(self, &recipe)?;
+        }
         Ok(recipe)
     }
+}
+
+/// What is about the sensor's light has no meaning for a picture that the camera rendered.
+fn check_preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
+    let asks = [
+        ("look", recipe.look == Look::Linear),
+        ("space", recipe.output.space == OutputSpace::Camera),
+        ("profile", matches!(settings.profile, ProfileChoice::File(_))),
+        ("engine", settings.engine == Engine::Imagepipe),
+    ];
+    let settings: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    if settings.is_empty() { Ok(()) } else { Err(SettingsError::Preview { settings }) }
 }
 
 fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
@@ -206,6 +229,17 @@ mod tests {
         let recipe = settings(Look::Linear, None, None).resolve(Format::Tiff).unwrap();
         assert_eq!(recipe.output.space, OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB.linear()));
         assert_eq!(recipe.output.bits, Bits::Sixteen);
+    }
+
+    #[test]
+    fn the_embedded_jpeg_is_no_scene_light() {
+        let asked = |settings: Settings| {
+            let message = settings.resolve(Format::Tiff).unwrap_err().to_string();
+            assert!(message.contains("no scene light as look asks for"), "{message}");
+        };
+        asked(Settings { from_preview: true, ..settings(Look::Linear, None, None) });
+        let rendered = Settings { from_preview: true, ..settings(Look::Vivid, Some("adobe-rgb"), None) };
+        assert!(rendered.resolve(Format::Tiff).is_ok());
     }
 
     #[test]

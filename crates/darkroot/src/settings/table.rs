@@ -86,7 +86,7 @@ fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 15] = [
+pub const SETTINGS: [Setting; 16] = [
     Setting {
         name: "format",
         alias: None,
@@ -253,6 +253,19 @@ pub const SETTINGS: [Setting; 15] = [
                built in, then the file's matrices) or `matrix`",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.profile, profile(text)),
+    },
+    Setting {
+        name: "from-preview",
+        alias: None,
+        noun: "switch",
+        kind: Kind::Switch,
+        default: "false",
+        group: Group::Picture,
+        placeholder: "BOOL",
+        help: "Develop the embedded JPEG in place of the samples: the camera's own rendering, often smaller, 8 bits; for \
+               files whose samples cannot be decoded, such as Nikon's High Efficiency",
+        changes: Changes::Photo,
+        set: |to, text| put(&mut to.from_preview, one_of(&SWITCH, text)),
     },
     Setting {
         name: "engine",
