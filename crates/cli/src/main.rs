@@ -16,6 +16,7 @@ mod picture;
 mod profile;
 mod progress;
 mod recipe;
+mod sandbox;
 mod shell;
 mod usage;
 mod values;
@@ -58,6 +59,15 @@ struct Common {
 const THREADS_OF_CORE: usize = 4;
 
 impl Common {
+    /// Starts the threads that every command has: one that hears interrupts, and those that develop.
+    fn start_threads(self) {
+        interrupt::handle();
+        if let Some(threads) = self.threads {
+            // Fails only when the pool exists already, which nothing before this makes.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        }
+    }
+
     /// Takes no more threads than the machine can use, and says so.
     fn bound_threads(&mut self) {
         let cores = darkroot_batch::system::threads();
@@ -104,20 +114,20 @@ enum Outcome {
 fn main() -> ExitCode {
     let mut cli = usage::parse();
     keep_decoders_quiet();
-    interrupt::handle();
     cli.common.bound_threads();
-    if let Some(threads) = cli.common.threads {
-        // Fails only when the pool exists already, which nothing before this line makes.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let common = cli.common;
+    // Some commands give up what they do not need first, and must be the only thread then.
+    if !matches!(cli.command, Command::Develop(_) | Command::Inspect(_) | Command::Worker(_)) {
+        common.start_threads();
     }
     let outcome = match cli.command {
-        Command::Develop(command) => command.run(cli.common),
-        Command::Batch(command) => command.run(cli.common),
-        Command::Watch(command) => command.run(cli.common),
-        Command::Inspect(command) => command.run(),
+        Command::Develop(command) => command.run(common),
+        Command::Batch(command) => command.run(common),
+        Command::Watch(command) => command.run(common),
+        Command::Inspect(command) => command.run(common),
         Command::Recipe(command) => command.run(),
-        Command::Profile(command) => command.run(cli.common),
-        Command::Verify(command) => command.run(cli.common),
+        Command::Profile(command) => command.run(common),
+        Command::Verify(command) => command.run(common),
         Command::Chart(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),

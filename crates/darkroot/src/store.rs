@@ -207,15 +207,15 @@ pub fn read(path: &Path) -> Result<Profile, Error> {
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
 pub fn write(profile: &Profile, path: &Path, overwrite: bool) -> Result<(), Error> {
-    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), None, overwrite)
+    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), overwrite)
 }
 
-/// As [`write()`], below a folder of outputs; a profile that is there is replaced.
+/// As [`write()`], to an output that was opened for this path before; a profile that is there is replaced.
 ///
 /// # Errors
-/// A link below the folder, or a file that cannot be written.
-pub fn write_below(profile: &Profile, path: &Path, tree: &crate::files::Tree) -> Result<(), Error> {
-    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), Some(tree), true)
+/// A file that cannot be written.
+pub fn write_into(output: crate::files::Output, profile: &Profile, path: &Path) -> Result<(), Error> {
+    output.write_whole(path, darkroot_profile::file::format(profile).as_bytes(), true)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {

@@ -3,8 +3,10 @@
 use super::*;
 
 fn put(path: &Path, text: &str, tree: Option<&Tree>, overwrite: bool) -> Result<(), io::Error> {
-    write(path, tree, overwrite, |out| out.write_all(text.as_bytes())).map_err(|failed| match failed {
-        Failed::Io(e) | Failed::Other(e) => e,
+    Output::open(path, tree)?.write(overwrite, |out| out.write_all(text.as_bytes())).map_err(|failed| {
+        match failed {
+            Failed::Io(e) | Failed::Other(e) => e,
+        }
     })
 }
 
