@@ -1,6 +1,8 @@
 //! Mutants of small raw files: each is a capture or a sentence, and what is a capture becomes a picture or a sentence.
 //! Never a panic that leaves Darkroot, never a hang. More: `DARKROOT_MUTANTS=2000000 cargo test --release`.
 
+#![allow(clippy::unwrap_used)] // A test may stop.
+
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use darkroot::{Cancel, Photo, ProfileStore, Settings, View};
@@ -22,6 +24,16 @@ fn every_small_raw_file_is_sound_before_it_is_damaged() {
             // Rawloader knows no X-Trans DNG, no single channel and nothing of opcodes: it says so in words.
             assert!(decoder == Decoder::Rawloader || found.is_ok(), "{name}: {found:?}");
         }
+    }
+}
+
+#[test]
+fn opcode_lists_of_small_raw_files_are_read() {
+    for (list, mosaic, picture) in [(51009, true, false), (51022, false, true)] {
+        let bytes = small_raws::named(&format!("opcodes-{list}.dng"));
+        let capture = decode(&bytes, Decoder::Flashraw, &LIMITS).unwrap();
+        let found = [!capture.mosaic_corrections.is_empty(), !capture.picture_corrections.is_empty()];
+        assert_eq!(found, [mosaic, picture], "{list}: {:?}", capture.notes);
     }
 }
 

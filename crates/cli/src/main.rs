@@ -70,15 +70,18 @@ impl Common {
 
     /// Takes no more threads than the machine can use, and says so.
     fn bound_threads(&mut self) {
+        self.threads = self.threads.map(|asked| self.at_most(asked, "threads are used"));
+    }
+
+    /// A number of threads or processes that the machine can use: that which was asked for, or fewer, which is said.
+    fn at_most(self, asked: usize, of: &str) -> usize {
         let cores = darkroot_batch::system::threads();
         let most = THREADS_OF_CORE * cores;
-        if let Some(asked) = self.threads.filter(|asked| *asked > most) {
-            self.threads = Some(most);
-            if !self.quiet {
-                let machine = if cores == 1 { "one core".to_owned() } else { format!("{cores} cores") };
-                say(format_args!("note: this machine has {machine}: {most} threads are used, not {asked}"));
-            }
+        if asked > most && !self.quiet {
+            let machine = if cores == 1 { "one core".to_owned() } else { format!("{cores} cores") };
+            say(format_args!("note: this machine has {machine}: {most} {of}, not {asked}"));
         }
+        asked.min(most)
     }
 }
 
@@ -117,7 +120,11 @@ fn main() -> ExitCode {
     cli.common.bound_threads();
     let common = cli.common;
     // Some commands give up what they do not need first, and must be the only thread then.
-    if !matches!(cli.command, Command::Develop(_) | Command::Inspect(_) | Command::Worker(_)) {
+    let is_confined = matches!(
+        cli.command,
+        Command::Develop(_) | Command::Inspect(_) | Command::Chart(_) | Command::Worker(_)
+    );
+    if !is_confined {
         common.start_threads();
     }
     let outcome = match cli.command {
@@ -128,7 +135,7 @@ fn main() -> ExitCode {
         Command::Recipe(command) => command.run(),
         Command::Profile(command) => command.run(common),
         Command::Verify(command) => command.run(common),
-        Command::Chart(command) => command.run(),
+        Command::Chart(command) => command.run(common),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),

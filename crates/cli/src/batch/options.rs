@@ -167,7 +167,7 @@ impl Work {
         self.sandbox.say(common);
         Ok(CrewOptions {
             workers: Workers::Processes(program, arguments.iter().map(Into::into).collect()),
-            jobs: self.jobs.map_or(threads, usize::from),
+            jobs: self.jobs.map_or(threads, |jobs| common.at_most(jobs.into(), "files at once")),
             threads,
             memory: self.memory.unwrap_or_else(|| system::free_memory() / 2),
             timeout: self.timeout,

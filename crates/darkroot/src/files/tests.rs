@@ -28,7 +28,8 @@ fn an_output_is_the_old_one_or_the_whole_new_one() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "one");
     put(&path, "two", None, true).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), "two");
-    let failed = write(&path, None, true, |out| out.write_all(b"half").and(Err(io::Error::other("no"))));
+    let output = Output::open(&path, None).unwrap();
+    let failed = output.write(true, |out| out.write_all(b"half").and(Err(io::Error::other("no"))));
     assert!(matches!(failed, Err(Failed::Other(_))));
     assert_eq!(
         (fs::read_to_string(&path).unwrap().as_str(), names(folder.path())),
