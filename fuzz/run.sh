@@ -20,7 +20,7 @@ for target in "$@"; do
     log=$(mktemp)
     # An input may take 20 s and 2 GB here, where everything is slower by the sanitizer.
     cargo +nightly fuzz run "$target" -- -dict="fuzz/$dictionary.dict" -max_total_time="$seconds" -timeout=20 \
-        -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=65536 -print_final_stats=1 2>"$log" ||
+        -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=65536 -print_final_stats=1 -print_funcs=0 2>"$log" ||
         echo "$target: a finding; see fuzz/artifacts/$target" >&2
     count=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -1)
     edges=$(grep -o 'cov: [0-9]*' "$log" | tail -1 | cut -d' ' -f2)

@@ -12,6 +12,8 @@ fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
 fuzz_target!(|bytes: &[u8]| {
     let _ = (import(bytes), camera(bytes));
     if let Ok(dcp) = Dcp::read(bytes) {
-        let _ = dcp.xyz([0.2, 0.4, 0.1]);
+        for light in &dcp.lights {
+            let _ = light.xyz([0.2, 0.4, 0.1]);
+        }
     }
 });

@@ -14,7 +14,7 @@ const EXIF: u16 = 34665;
 const GPS: u16 = 34853;
 const LONG: u16 = 4;
 
-fuzz_target!(|bytes: &[u8]| {
+fuzz_target!(init: darkroot_fuzz::expect_panics_of_decoders(), |bytes: &[u8]| {
     let Some((&which, directory)) = bytes.split_first() else { return };
     let mut file = DNG.clone();
     let at = file.len() as u32;

@@ -13,7 +13,7 @@ use libfuzzer_sys::fuzz_target;
 static DNG: LazyLock<Vec<u8>> = LazyLock::new(|| small_raws::named("bayer-uncompressed.dng"));
 static STORE: LazyLock<ProfileStore> = LazyLock::new(ProfileStore::builtin);
 
-fuzz_target!(|bytes: &[u8]| {
+fuzz_target!(init: darkroot_fuzz::expect_panics_of_decoders(), |bytes: &[u8]| {
     let Some((&which, list)) = bytes.split_first() else { return };
     let list_tag = small_raws::OPCODE_LISTS[usize::from(which) % 3];
     let Ok(photo) = Photo::open(&small_raws::with_opcodes(&DNG, list_tag, list), &LIMITS) else { return };

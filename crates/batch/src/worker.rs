@@ -148,7 +148,7 @@ enum Ready {
     Header(PathBuf),
     Develop(Box<Opened>),
     Look { input: PathBuf, layout: Option<String> },
-    Calibrate(Calibrate, Output),
+    Calibrate(Box<Calibrate>, Output),
     Thumbnail(PathBuf),
 }
 
@@ -160,7 +160,7 @@ impl Ready {
             Task::Look { input, layout } => Self::Look { input, layout },
             Task::Calibrate(task) => {
                 let output = chart_shot::open(&task)?;
-                Self::Calibrate(task, output)
+                Self::Calibrate(Box::new(task), output)
             }
             Task::Thumbnail { picture } => Self::Thumbnail(picture),
         })

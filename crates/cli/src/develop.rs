@@ -130,7 +130,7 @@ impl Develop {
         target: &Target,
         orders: &[Order],
         common: Common,
-    ) -> Result<(Vec<Job>, Vec<Option<Result<Output, Error>>>)> {
+    ) -> Result<(Vec<Job>, Opened)> {
         let profiles = orders.iter().filter_map(|order| sandbox::profile(&order.settings));
         let reach = sandbox::reading(&self.files).with_any(profiles, Access::Read);
         self.sandbox.say(common);
@@ -153,6 +153,9 @@ impl Develop {
         Ok((jobs, outputs.into_iter().map(Some).collect()))
     }
 }
+
+/// Outputs by job, open or with the reason why they are not, until they are taken.
+type Opened = Vec<Option<Result<Output, Error>>>;
 
 /// Outputs that are opened before the first file is read; each takes three descriptors.
 const OPEN_AT_ONCE: usize = 64;

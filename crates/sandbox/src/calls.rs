@@ -120,6 +120,10 @@ const GIVEN_UP: &[&[i64]] = &[
     OLD,
 ];
 
+/// TIOCSTI and TIOCLINUX: what a terminal is told by them, its shell does.
+const TYPE_INTO_TERMINAL: u64 = 0x5412;
+const COMMAND_CONSOLE: u64 = 0x541c;
+
 /// The same number everywhere (Linux 6.6).
 const FCHMODAT2: i64 = 452;
 
@@ -181,10 +185,7 @@ fn with_arguments() -> Result<[(i64, Vec<SeccompRule>); 4], BackendError> {
         // Typing into the terminal what its shell then does.
         (
             libc::SYS_ioctl,
-            vec![
-                when(1, SeccompCmpOp::Eq, libc::TIOCSTI as u64)?,
-                when(1, SeccompCmpOp::Eq, libc::TIOCLINUX as u64)?,
-            ],
+            vec![when(1, SeccompCmpOp::Eq, TYPE_INTO_TERMINAL)?, when(1, SeccompCmpOp::Eq, COMMAND_CONSOLE)?],
         ),
     ])
 }
