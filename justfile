@@ -22,6 +22,10 @@ golden-update:
 bench *args:
     cargo bench -p darkroot-develop -p darkroot {{args}}
 
+# Every fuzz target for so many seconds (nightly, cargo-fuzz).
+fuzz-all seconds="600":
+    bash fuzz/run.sh {{seconds}}
+
 # Damaged raw files against both decoders: 6000 mutants of each sample.
 fuzz mutants="6000":
     DARKROOT_MUTANTS={{mutants}} cargo test --release -p darkroot-raw --test mutations

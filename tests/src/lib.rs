@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // Helpers of tests; a panic is a failed test.
 
+pub mod small_raws;
+pub mod tiff_mutator;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

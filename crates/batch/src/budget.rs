@@ -113,6 +113,11 @@ impl Budget {
         matches!(self.places[place].phase, Phase::Reading | Phase::Running)
     }
 
+    /// Whether the worker has yet to say what it needs.
+    pub(crate) fn reads(&self, place: usize) -> bool {
+        self.places[place].phase == Phase::Reading
+    }
+
     /// Those who may go on now, each with its threads. `queued` more files are to come.
     pub(crate) fn grants(&mut self, queued: usize) -> Vec<(usize, usize)> {
         let mut granted = Vec::new();

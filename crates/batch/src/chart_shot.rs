@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use darkroot::fault::ChartError;
-use darkroot::files::Tree;
+use darkroot::files::{Output, Tree};
 use darkroot::make_profile::ChartRequest;
 use darkroot::shot::{Finding, Verdict};
 use darkroot::{
@@ -57,8 +57,19 @@ fn made_in_its_light(
     }
 }
 
+/// Opens the profile's file.
+pub(crate) fn open(task: &Calibrate) -> Result<Output, Error> {
+    let scratch = task.profile.parent().unwrap_or(&task.out).to_owned();
+    let tree = Tree { root: task.out.clone(), scratch };
+    Output::open(&task.profile, Some(&tree)).map_err(|e| Error::write(&task.profile, e))
+}
+
 /// Makes a profile of a chart shot and writes it.
-pub(crate) fn calibrate(task: &Calibrate, settings: &Settings) -> Result<SessionColour, Error> {
+pub(crate) fn calibrate(
+    output: Output,
+    task: &Calibrate,
+    settings: &Settings,
+) -> Result<SessionColour, Error> {
     let input = &task.input;
     let layout = charts::layout(&task.layout)?;
     let reference = charts::reference(task.reference.as_deref(), &layout)?;
@@ -81,8 +92,7 @@ pub(crate) fn calibrate(task: &Calibrate, settings: &Settings) -> Result<Session
     if white.iter().any(|v| *v <= 0.0) {
         return Err(Error::chart(input, ChartError::DarkGreys));
     }
-    let scratch = task.profile.parent().unwrap_or(&task.out).to_owned();
-    store::write_below(&made.profile, &task.profile, &Tree { root: task.out.clone(), scratch })?;
+    store::write_into(output, &made.profile, &task.profile)?;
     Ok(SessionColour {
         camera,
         chart: String::new(),

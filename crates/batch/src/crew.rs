@@ -20,6 +20,9 @@ const TICK: Duration = Duration::from_millis(50);
 /// How long a process whose answers have ended may take to end itself.
 const EXIT_GRACE: Duration = Duration::from_millis(200);
 
+/// The signal that ends a process which makes a system call that it gave up (SIGSYS).
+const BREACH: i32 = 31;
+
 /// Memory of the process that the crew works for.
 const PARENT: u64 = 32 << 20;
 
@@ -65,7 +68,7 @@ pub(crate) enum Next {
 /// An answer with the place and the number of the worker that it comes from; `None` when no more will come.
 type Message = (usize, u64, Option<Answer>);
 
-/// Workers that live from task to task.
+/// Workers: processes that do one file each, or threads that live from task to task.
 pub(crate) struct Crew {
     options: CrewOptions,
     slots: Vec<Slot>,
@@ -209,7 +212,13 @@ impl Crew {
 
     fn answered(&mut self, slot: usize, answer: Option<Answer>, round: &mut Round<'_>) {
         match answer {
-            Some(Answer::Needs { bytes }) => self.needs(slot, bytes, round),
+            // Once a task, so that nobody gets time for it by asking again.
+            Some(Answer::Needs { bytes }) if self.budget.reads(slot) => self.needs(slot, bytes, round),
+            Some(Answer::Needs { .. }) => {
+                self.end_worker(slot, Duration::ZERO);
+                let failure = Failure::Crashed { path: self.slots[slot].path() };
+                self.end_task(slot, Err(failure), round);
+            }
             Some(Answer::Dropped) => {
                 if let Some((work, _)) = self.slots[slot].work.take()
                     && !self.slots[slot].told
@@ -262,10 +271,16 @@ impl Crew {
         self.free(slot);
     }
 
+    /// The slot is free for another task. A process does one file and ends; nobody waits for that.
     fn free(&mut self, slot: usize) {
         self.slots[slot].work = None;
         self.slots[slot].told = false;
         self.budget.free(slot);
+        if self.can_end_workers()
+            && let Some((_, worker)) = self.slots[slot].worker.take()
+        {
+            std::thread::spawn(move || worker.end(EXIT_GRACE));
+        }
     }
 
     fn tell(&mut self, slot: usize, result: Result<Answer, Failure>, round: &mut Round<'_>) {
@@ -321,6 +336,7 @@ impl Crew {
         let exit = self.end_worker(slot, EXIT_GRACE);
         match exit {
             Some(exit) if exit.last_line.contains("memory allocation") => Failure::TooMuchMemory { path },
+            Some(Exit { signal: Some(BREACH), .. }) => Failure::Breach { path },
             Some(Exit { signal: Some(9), .. }) => Failure::Ended { path },
             _ => Failure::Crashed { path },
         }

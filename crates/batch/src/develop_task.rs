@@ -1,10 +1,12 @@
 //! What a worker does with a file to develop.
 
-use std::path::Path;
+use std::fs::File;
+use std::io::{Seek, SeekFrom};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use darkroot::files::Tree;
-use darkroot::job::{Control, develop_bytes};
+use darkroot::files::{Output, Tree};
+use darkroot::job::{Control, develop_into, open_output};
 use darkroot::recipe::Effective;
 use darkroot::{Error, Format, Job, ProfileStore, Settings};
 use darkroot_photo::{Camera, Picture};
@@ -16,7 +18,7 @@ use super::{hash, process_limits, thumbnail};
 use darkroot::shown;
 
 /// Settings and format of a task. The parent has checked them.
-pub(crate) fn settings(task: &Develop) -> Result<(Settings, Format), TaskError> {
+fn settings(task: &Develop) -> Result<(Settings, Format), TaskError> {
     let wrong = |e: darkroot::RecipeError| {
         let words = format!("{}: {e}", shown(&task.input));
         TaskError { kind: FailureKind::File, words }
@@ -27,32 +29,61 @@ pub(crate) fn settings(task: &Develop) -> Result<(Settings, Format), TaskError> 
     Ok((settings, format))
 }
 
+/// A file to develop whose output is open.
+pub(crate) struct Opened {
+    task: Develop,
+    job: Job,
+    pub(crate) settings: Settings,
+    pub(crate) format: Format,
+    pub(crate) output: Output,
+}
+
+impl Opened {
+    pub(crate) fn input(&self) -> &Path {
+        &self.job.input
+    }
+
+    /// Profiles that were made of charts.
+    pub(crate) fn session_profiles(&self) -> impl Iterator<Item = PathBuf> {
+        self.task.session.iter().map(|colour| colour.profile.clone())
+    }
+}
+
+/// Opens the output of a task.
+pub(crate) fn open(task: Develop) -> Result<Opened, Fault> {
+    let (mut settings, format) = settings(&task).map_err(Fault::Task)?;
+    settings.format = Some(format);
+    settings.overwrite = task.overwrite;
+    settings.tree = Some(Tree { root: task.out.clone(), scratch: task.scratch.clone() });
+    let job = Job { input: task.input.clone(), output: task.output.clone() };
+    let output = open_output(&job, &settings)?;
+    Ok(Opened { task, job, settings, format, output })
+}
+
 /// Develops the file whose bytes these are and writes its picture.
 pub(crate) fn develop(
-    task: &Develop,
+    opened: Opened,
     bytes: Vec<u8>,
     identity: Identity,
     camera: &Camera,
     store: &ProfileStore,
 ) -> Result<Developed, Fault> {
     let start = Instant::now();
-    let (mut settings, format) = settings(task).map_err(Fault::Task)?;
-    settings.format = Some(format);
-    settings.overwrite = task.overwrite;
-    settings.tree = Some(Tree { root: task.out.clone(), scratch: task.scratch.clone() });
+    let Opened { task, job, mut settings, output, .. } = opened;
     let names = CameraNames::from(camera);
     let colour = task.session.iter().find(|c| c.camera == names);
     if let Some(colour) = colour {
         colour.apply(&mut settings);
     }
-    let job = Job { input: task.input.clone(), output: task.output.clone() };
+    let wrong = |e| Error::write(&task.output, e);
+    let mut file = output.file().map_err(wrong)?;
     let mut small = None;
     let mut seen = |picture: &Picture| small = thumbnail::of_picture(picture);
     let control = Control { seen: task.thumbnail.then_some(&mut seen), ..Control::default() };
     // The bytes whose hash is recorded are the ones that are decoded.
-    let report = develop_bytes(&job, || Ok(bytes), &settings, store, control)?;
+    let report = develop_into(output, &job, || Ok(bytes), &settings, store, control)?;
     let profile = hash::profile(&settings, camera, store)?;
-    let written = written(&task.output).map_err(|e| Error::read(&task.output, e))?;
+    let written = written(&mut file).map_err(|e| Error::read(&task.output, e))?;
     let mut notes = report.notes;
     if let Some(colour) = colour {
         notes.push(format!("white balance and profile from the chart in {}", colour.chart));
@@ -74,7 +105,8 @@ pub(crate) fn develop(
 }
 
 /// What a finished output is.
-fn written(path: &Path) -> std::io::Result<Identity> {
-    let data = std::fs::metadata(path)?;
-    Ok(Identity { size: data.len(), modified: modified(&data), sha256: hash::file(path)? })
+fn written(file: &mut File) -> std::io::Result<Identity> {
+    let data = file.metadata()?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(Identity { size: data.len(), modified: modified(&data), sha256: hash::content(file)? })
 }

@@ -65,6 +65,16 @@ pub enum Failure {
         /// The file.
         path: PathBuf,
     },
+    /// Its worker tried what no decoder has to do, and was ended.
+    #[error(
+        "{path}: its decoder tried what decoding never needs, such as to start a program, and was ended; the file is \
+         most likely an attack",
+        path = shown(path)
+    )]
+    Breach {
+        /// The file.
+        path: PathBuf,
+    },
     /// Another picture is in the way.
     #[error(transparent)]
     Conflict(#[from] Conflict),
@@ -87,6 +97,7 @@ impl Failure {
             Self::TookTooLong { .. }
             | Self::TooMuchMemory { .. }
             | Self::Ended { .. }
+            | Self::Breach { .. }
             | Self::Crashed { .. } => FailureKind::Died,
         }
     }

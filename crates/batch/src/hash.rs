@@ -23,7 +23,11 @@ pub(crate) fn text(text: &str) -> String {
 
 /// Of a file's content.
 pub(crate) fn file(path: &Path) -> io::Result<String> {
-    let mut file = files::open(path)?;
+    content(&mut files::open(path)?)
+}
+
+/// Of what an open file holds from its place on.
+pub(crate) fn content(file: &mut std::fs::File) -> io::Result<String> {
     let mut digest = Sha256::new();
     let mut block = vec![0; BLOCK];
     loop {

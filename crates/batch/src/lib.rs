@@ -66,7 +66,11 @@ mod thumbnail;
 
 mod chart_shot;
 mod develop_task;
+mod reach;
 pub mod worker;
+
+#[cfg(fuzzing)]
+pub mod fuzzing;
 
 mod budget;
 mod process;

@@ -1,13 +1,19 @@
 //! One worker process, as its parent sees it.
 
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::task::{Answer, Order};
+
+/// The longest line that is taken from a worker, in bytes: a picture for the contact sheet and hundreds of notes. A worker
+/// that was led astray might never end one.
+const LONGEST_ANSWER: u64 = 4 << 20;
+/// The longest line that is taken of what it says for people, in bytes.
+const LONGEST_WORDS: u64 = 64 << 10;
 
 /// A process at the other end of two pipes.
 pub(crate) struct Process {
@@ -49,19 +55,22 @@ impl Process {
         let stdout = child.stdout.take().ok_or_else(missing)?;
         let stderr = child.stderr.take().ok_or_else(missing)?;
         std::thread::spawn(move || {
-            for line in BufReader::new(stdout).lines() {
-                let answer = line.ok().and_then(|l| serde_json::from_str(&l).ok());
+            let mut lines = BufReader::new(stdout);
+            loop {
+                let line = bounded_line(&mut lines, LONGEST_ANSWER);
+                let answer = line.and_then(|line| serde_json::from_slice(&line).ok());
                 let gone = answer.is_none();
                 if !on_answer(answer) || gone {
                     return;
                 }
             }
-            on_answer(None);
         });
         let last_line = Arc::new(Mutex::new(String::new()));
         let shared = Arc::clone(&last_line);
         std::thread::spawn(move || {
-            for line in BufReader::new(stderr).lines().map_while(Result::ok) {
+            let mut lines = BufReader::new(stderr);
+            while let Some(line) = bounded_line(&mut lines, LONGEST_WORDS) {
+                let line = String::from_utf8_lossy(&line).into_owned();
                 *shared.lock().unwrap_or_else(PoisonError::into_inner) = line;
             }
         });
@@ -95,6 +104,13 @@ impl Process {
     }
 }
 
+/// The next line without its end; `None` where there is none, or one longer than that.
+fn bounded_line(from: &mut impl BufRead, most: u64) -> Option<Vec<u8>> {
+    let mut line = Vec::new();
+    from.take(most).read_until(b'\n', &mut line).ok()?;
+    line.pop_if(|end| *end == b'\n').map(|_| line)
+}
+
 #[cfg(unix)]
 fn signal(status: &ExitStatus) -> Option<i32> {
     std::os::unix::process::ExitStatusExt::signal(status)
@@ -103,4 +119,18 @@ fn signal(status: &ExitStatus) -> Option<i32> {
 #[cfg(not(unix))]
 fn signal(_: &ExitStatus) -> Option<i32> {
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_without_an_end_is_none() {
+        let mut lines = &b"one\ntwo\nthree"[..];
+        assert_eq!(bounded_line(&mut lines, 4).unwrap(), b"one");
+        assert_eq!(bounded_line(&mut lines, 100).unwrap(), b"two");
+        assert_eq!(bounded_line(&mut lines, 100), None);
+        assert_eq!(bounded_line(&mut BufReader::new(std::io::repeat(b'x')), 1 << 16), None);
+    }
 }

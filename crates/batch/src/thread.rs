@@ -8,7 +8,7 @@ use darkroot::ProfileStore;
 
 use super::task::{Answer, Order};
 use super::wording::Wording;
-use super::worker::{Connection, Host, work_until_end};
+use super::worker::{Connection, Host, work};
 
 /// A thread at the other end of a channel.
 pub(crate) struct Thread {
@@ -31,9 +31,9 @@ impl Thread {
         let run = move || {
             let mut connection = Channels { orders: received, on_answer: &on_answer };
             let words = |error: &(dyn std::error::Error + 'static)| wording.of(error);
-            let host = Host { store: &store, words: &words, own_process: false };
+            let host = Host { store: &store, words: &words, own_process: false, sandbox: false };
             // The tasks themselves are guarded; this is for what is not expected at all.
-            let _ = catch_unwind(AssertUnwindSafe(|| work_until_end(&mut connection, &host)));
+            let _ = catch_unwind(AssertUnwindSafe(|| while work(&mut connection, &host).unwrap_or(false) {}));
             on_answer(None);
         };
         let thread = std::thread::Builder::new().name("darkroot-worker".into()).spawn(run)?;

@@ -1,24 +1,29 @@
-//! A worker: takes tasks one after the other and answers.
+//! A worker: takes a task and answers. A process does one file, so that what one does to it is nothing to the next.
 //!
 //! Raw decoders meet hostile files here and nowhere else in a batch. If one aborts in a worker process, that process
 //! is gone and the parent knows which file it was.
 
 use std::error::Error as StdError;
 use std::io::{BufRead, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use darkroot::{Error, ProfileStore, Settings, files};
+use darkroot::files::{self, Output};
+use darkroot::{Error, ProfileStore, Settings};
+use darkroot_sandbox::{Breach, Reach};
 
-use super::develop_task::{develop, settings};
+use super::develop_task::{Opened, develop};
 use super::facts::{CameraNames, ChartLook, Identity, modified};
 use super::failure::FailureKind;
 use super::raw_head::RawHead;
-use super::task::{Answer, Developed, Fault, Order, Task, TaskError};
-use super::{chart_shot, hash, need, process_limits, thumbnail};
+use super::task::{Answer, Calibrate, Developed, Fault, Order, Task, TaskError};
+use super::{chart_shot, develop_task, hash, need, process_limits, reach, thumbnail};
 use darkroot::shown;
 
-/// Works as a worker process until stdin ends: the parent is done, or gone. `words` words errors for people;
+/// Works as a worker process: for one file, then it ends. `words` words errors for people;
 /// `&|error| error.to_string()` gives their own text.
+///
+/// With `sandbox`, everything but this file and its output is given up before a byte of it is read, as far as the system
+/// offers that; see `darkroot_sandbox`. The process must have no other threads then.
 ///
 /// # Errors
 /// stdin or stdout fails.
@@ -27,10 +32,11 @@ pub fn serve(
     answers: impl Write,
     store: &ProfileStore,
     words: &dyn Fn(&(dyn StdError + 'static)) -> String,
+    sandbox: bool,
 ) -> std::io::Result<()> {
     process_limits::prepare();
     let mut connection = JsonLines { orders: orders.lines(), answers };
-    work_until_end(&mut connection, &Host { store, words, own_process: true })
+    work(&mut connection, &Host { store, words, own_process: true, sandbox }).map(drop)
 }
 
 /// The line to the crew.
@@ -66,6 +72,8 @@ pub(crate) struct Host<'a> {
     pub(crate) words: &'a dyn Fn(&(dyn StdError + 'static)) -> String,
     /// Whether the process is the worker's own, so that its memory can be limited.
     pub(crate) own_process: bool,
+    /// Whether it gives up what a task does not need.
+    pub(crate) sandbox: bool,
 }
 
 impl Host<'_> {
@@ -82,6 +90,25 @@ impl Host<'_> {
         }
     }
 
+    /// Gives up what the task does not need.
+    fn confine(&self, path: &Path, ready: &Ready) -> Result<(), TaskError> {
+        if !self.sandbox {
+            return Ok(());
+        }
+        // The parent tells what the system does not offer.
+        darkroot_sandbox::confine(&ready.reach(), Breach::Ends).map(drop).map_err(|error| TaskError {
+            kind: FailureKind::File,
+            words: format!("{}: {}", shown(path), (self.words)(&error)),
+        })
+    }
+
+    fn fault(&self, fault: Fault) -> TaskError {
+        match fault {
+            Fault::Task(error) => error,
+            Fault::Library(error) => self.error(&error),
+        }
+    }
+
     fn error(&self, error: &Error) -> TaskError {
         let kind = match error {
             Error::DiskFull { .. } => FailureKind::DiskFull,
@@ -92,36 +119,60 @@ impl Host<'_> {
     }
 }
 
-/// Takes tasks until there are no more.
+/// Takes the next task to its end. Says whether there was one.
 ///
 /// # Errors
 /// The connection fails.
-pub(crate) fn work_until_end(connection: &mut dyn Connection, host: &Host<'_>) -> std::io::Result<()> {
-    let mut threads = Threads::default();
+pub(crate) fn work(connection: &mut dyn Connection, host: &Host<'_>) -> std::io::Result<bool> {
     while let Some(order) = connection.next()? {
         // Go and Drop belong to a task; alone they are left over from one that failed early.
         if let Order::Task(task) = order {
-            let answer = perform(*task, connection, &mut threads, host)?;
+            let answer = perform(*task, connection, host)?;
             connection.say(answer)?;
+            return Ok(true);
         }
     }
-    Ok(())
+    Ok(false)
 }
 
-/// The pool of the last task, kept for the next one of the same size.
-#[derive(Default)]
-struct Threads(Option<(usize, rayon::ThreadPool)>);
+/// Runs with so many threads; where the system has none to give, in this one.
+fn in_threads<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(count).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}
 
-impl Threads {
-    /// Runs with so many threads; where the system has none to give, in this one.
-    fn run<T: Send>(&mut self, count: usize, work: impl FnOnce() -> T + Send) -> T {
-        if self.0.as_ref().is_none_or(|(n, _)| *n != count) {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
-            self.0 = pool.ok().map(|pool| (count, pool));
-        }
-        match &self.0 {
-            Some((_, pool)) => pool.install(work),
-            None => work(),
+/// A task with everything open that it writes.
+enum Ready {
+    Header(PathBuf),
+    Develop(Box<Opened>),
+    Look { input: PathBuf, layout: Option<String> },
+    Calibrate(Box<Calibrate>, Output),
+    Thumbnail(PathBuf),
+}
+
+impl Ready {
+    fn of(task: Task) -> Result<Self, Fault> {
+        Ok(match task {
+            Task::Header { input } => Self::Header(input),
+            Task::Develop(task) => Self::Develop(Box::new(develop_task::open(task)?)),
+            Task::Look { input, layout } => Self::Look { input, layout },
+            Task::Calibrate(task) => {
+                let output = chart_shot::open(&task)?;
+                Self::Calibrate(Box::new(task), output)
+            }
+            Task::Thumbnail { picture } => Self::Thumbnail(picture),
+        })
+    }
+
+    /// What it still needs.
+    fn reach(&self) -> Reach {
+        match self {
+            Self::Header(input) | Self::Thumbnail(input) => reach::reading(input),
+            Self::Develop(opened) => reach::developing(opened),
+            Self::Look { input, layout } => reach::looking(input, layout.as_deref()),
+            Self::Calibrate(task, output) => reach::calibrating(task, output),
         }
     }
 }
@@ -134,8 +185,7 @@ struct Input {
     head: Option<RawHead>,
 }
 
-fn read(task: &Task, host: &Host<'_>) -> Result<Input, TaskError> {
-    let path = task.input();
+fn read(path: &Path, task: &Ready, host: &Host<'_>) -> Result<Input, TaskError> {
     let stat = || std::fs::metadata(path).map_err(|e| host.error(&Error::read(path, e)));
     let before = stat()?;
     // Heads are read by foreign code too.
@@ -148,7 +198,7 @@ fn read(task: &Task, host: &Host<'_>) -> Result<Input, TaskError> {
     }
     let identity = Identity { size: after.len(), modified: modified(&after), sha256: hash::bytes(&bytes) };
     let head = match task {
-        Task::Thumbnail { .. } => None,
+        Ready::Thumbnail(_) => None,
         _ => Some(RawHead::of(path, &bytes).map_err(|e| host.error(&e))?),
     };
     Ok(Input { bytes, identity, head })
@@ -160,19 +210,16 @@ fn changing(path: &Path) -> TaskError {
 }
 
 /// One task from its file to the answer.
-fn perform(
-    task: Task,
-    connection: &mut dyn Connection,
-    threads: &mut Threads,
-    host: &Host<'_>,
-) -> std::io::Result<Answer> {
+fn perform(task: Task, connection: &mut dyn Connection, host: &Host<'_>) -> std::io::Result<Answer> {
     let path = task.input().clone();
     let ready = guarded(&path, || {
-        let input = read(&task, host)?;
-        let bytes = needed(&task, &input)?;
-        Ok((input, bytes))
+        let task = Ready::of(task).map_err(|fault| host.fault(fault))?;
+        host.confine(&path, &task)?;
+        let input = read(&path, &task, host)?;
+        let bytes = needed(&task, &input);
+        Ok((task, input, bytes))
     });
-    let (input, bytes) = match ready {
+    let (task, input, bytes) = match ready {
         Ok(ready) => ready,
         Err(error) => {
             host.unlimit_memory();
@@ -190,31 +237,23 @@ fn perform(
     host.limit_memory(bytes);
     // Only the profiles go to other threads: words may be anybody's function and stay in this one.
     let store = host.store;
-    let result = threads.run(count, || guarded_result(&path, || execute(task, input, bytes, store)));
+    let result = in_threads(count, || guarded_result(&path, || execute(&path, task, input, bytes, store)));
     host.unlimit_memory();
-    Ok(result.unwrap_or_else(|error| {
-        Answer::Failed(match error {
-            Fault::Task(error) => error,
-            Fault::Library(error) => host.error(&error),
-        })
-    }))
+    Ok(result.unwrap_or_else(|fault| Answer::Failed(host.fault(fault))))
 }
 
 /// Bytes that the task takes.
-fn needed(task: &Task, input: &Input) -> Result<u64, TaskError> {
+fn needed(task: &Ready, input: &Input) -> u64 {
     let len = input.bytes.len() as u64;
     let head = input.head.as_ref();
     let (samples, float, pixels) = head.map_or((0, false, 0), |h| (h.samples, h.float, h.header.pixels));
-    Ok(match task {
-        Task::Header { .. } => need::head(len),
+    match task {
+        Ready::Header(_) => need::head(len),
         // A JPEG holds up to some twenty times its size in pixels.
-        Task::Thumbnail { .. } => need::WORKER + 40 * len,
-        Task::Look { .. } | Task::Calibrate(_) => need::chart(len, samples, pixels),
-        Task::Develop(task) => {
-            let (settings, format) = settings(task)?;
-            need::develop(len, samples, float, pixels, &settings, format)
-        }
-    })
+        Ready::Thumbnail(_) => need::WORKER + 40 * len,
+        Ready::Look { .. } | Ready::Calibrate(..) => need::chart(len, samples, pixels),
+        Ready::Develop(opened) => need::develop(len, samples, float, pixels, &opened.settings, opened.format),
+    }
 }
 
 /// Runs foreign and own code so that a panic costs one file.
@@ -236,29 +275,34 @@ fn panicked(path: &Path) -> TaskError {
     TaskError { kind: FailureKind::File, words }
 }
 
-fn execute(task: Task, input: Input, needed: u64, store: &ProfileStore) -> Result<Answer, Fault> {
-    let path = task.input().clone();
+fn execute(
+    path: &Path,
+    task: Ready,
+    input: Input,
+    needed: u64,
+    store: &ProfileStore,
+) -> Result<Answer, Fault> {
     let head = input.head.clone().unwrap_or_default();
     match task {
-        Task::Header { .. } => Ok(Answer::Header(head.header)),
-        Task::Develop(task) => {
-            let developed = develop(&task, input.bytes, input.identity, &head.camera, store)?;
+        Ready::Header(_) => Ok(Answer::Header(head.header)),
+        Ready::Develop(opened) => {
+            let developed = develop(*opened, input.bytes, input.identity, &head.camera, store)?;
             Ok(Answer::Developed(Box::new(Developed { needed, ..developed })))
         }
-        Task::Look { layout, .. } => {
+        Ready::Look { layout, .. } => {
             let sha256 = input.identity.sha256.clone();
-            let look = || chart_shot::look(&path, layout.as_deref(), &Settings::default());
-            let chart = with_same_content(&path, &sha256, look)?;
+            let look = || chart_shot::look(path, layout.as_deref(), &Settings::default());
+            let chart = with_same_content(path, &sha256, look)?;
             let camera = CameraNames::from(&head.camera);
             Ok(Answer::Looked(ChartLook { camera, chart, source: input.identity }))
         }
-        Task::Calibrate(task) => {
+        Ready::Calibrate(task, output) => {
             drop(input);
-            let calibrate = || chart_shot::calibrate(&task, &Settings::default());
-            let colour = with_same_content(&path, &task.sha256, calibrate)?;
+            let calibrate = || chart_shot::calibrate(output, &task, &Settings::default());
+            let colour = with_same_content(path, &task.sha256, calibrate)?;
             Ok(Answer::Calibrated(Box::new(colour)))
         }
-        Task::Thumbnail { .. } => Ok(Answer::Thumbnail(thumbnail::of_file(&input.bytes))),
+        Ready::Thumbnail(_) => Ok(Answer::Thumbnail(thumbnail::of_file(&input.bytes))),
     }
 }
 

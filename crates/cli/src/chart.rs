@@ -9,8 +9,9 @@ use darkroot::find_chart::{Found, FoundCharts, preview};
 use darkroot::{Settings, charts, find_charts, path_text, shown};
 use serde_json::json;
 
-use crate::Outcome;
 use crate::deadline::Deadline;
+use crate::sandbox::{self, Sandbox};
+use crate::{Common, Outcome};
 
 /// Find colour charts in raw files and pictures: corners, which chart, which way round
 ///
@@ -29,6 +30,9 @@ pub(crate) struct Chart {
     #[command(flatten)]
     deadline: Deadline,
 
+    #[command(flatten)]
+    sandbox: Sandbox,
+
     /// One line of JSON for each file
     #[arg(long)]
     json: bool,
@@ -43,7 +47,7 @@ pub(crate) struct Chart {
 }
 
 impl Chart {
-    pub(crate) fn run(self) -> Result<Outcome> {
+    pub(crate) fn run(self, common: Common) -> Result<Outcome> {
         if self.preview.is_some() && self.files.len() > 1 {
             bail!("`--preview` shows one file; name one");
         }
@@ -52,6 +56,11 @@ impl Chart {
         } else {
             self.charts.iter().map(|c| charts::layout(c)).collect::<Result<_, _>>()?
         };
+        self.sandbox.say(common);
+        let reach = sandbox::reading(&self.files);
+        let reach = self.preview.iter().fold(reach, |reach, preview| sandbox::writing(reach, preview));
+        self.sandbox.confine(&reach)?;
+        common.start_threads();
         let settings = Settings::default();
         let mut outcome = Outcome::Done;
         for (number, file) in self.files.iter().enumerate() {

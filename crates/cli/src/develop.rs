@@ -6,13 +6,18 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, ensure};
 use clap::Args;
-use darkroot::{Control, Job, ProfileStore, Report, Target, path_text, plan_outputs, shown};
+use darkroot::{
+    Control, Error, Format, Job, Output, ProfileStore, Report, Settings, Target, files, open_output,
+    path_text, plan_outputs, shown,
+};
 use darkroot_batch::Failure;
+use darkroot_sandbox::Access;
 
 use crate::deadline::Deadline;
 use crate::hint;
 use crate::picture::{Order, Picture, source_paths, sources};
 use crate::progress::Progress;
+use crate::sandbox::{self, Sandbox};
 use crate::{Common, Outcome};
 
 /// Develop raw photographs into pictures
@@ -40,6 +45,9 @@ pub(crate) struct Develop {
     #[command(flatten)]
     deadline: Deadline,
 
+    #[command(flatten)]
+    sandbox: Sandbox,
+
     /// Report each file as a line of JSON on stdout
     #[arg(long)]
     json: bool,
@@ -61,8 +69,6 @@ impl Develop {
         let orders = self.files.iter().map(|file| Order::of(file, &mut layers, &target));
         let orders = orders.collect::<Result<Vec<Order>>>()?;
         let inputs: Vec<_> = self.files.iter().cloned().zip(orders.iter().map(|o| o.format)).collect();
-        let jobs = plan_outputs(&inputs, &target)?;
-        make_folders(&target, &jobs)?;
         let store = match ProfileStore::user_folder() {
             Some(folder) => ProfileStore::with_user_folder(&folder),
             None => ProfileStore::builtin(),
@@ -70,13 +76,14 @@ impl Develop {
         for fault in &store.faults {
             crate::say(format_args!("warning: {fault}; it is not used"));
         }
+        let (jobs, mut outputs) = self.open(&inputs, &target, &orders, common)?;
+        common.start_threads();
 
         let progress = Progress::new(&jobs, common.quiet);
         let mut failures = 0;
         for (number, (job, order)) in jobs.iter().zip(&orders).enumerate() {
             progress.begin(number, job);
-            let mut settings = order.settings.clone();
-            settings.overwrite = self.overwrite;
+            let settings = self.settings(order);
             let step = |step| progress.step(step);
             let control = Control { step: Some(&step), ..Control::default() };
             let late = |failure: &Failure| {
@@ -85,8 +92,10 @@ impl Develop {
                     let _ = print_line(order, failed(job, failure));
                 }
             };
+            let output = outputs.get_mut(number).and_then(Option::take);
             let mut result = self.deadline.over(&job.input, jobs.len() - number - 1, late, || {
-                darkroot::develop(job, &settings, &store, control)
+                let output = output.unwrap_or_else(|| open_output(job, &settings))?;
+                darkroot::develop_into(output, job, || files::read(&job.input), &settings, &store, control)
             });
             match &mut result {
                 Ok(report) => {
@@ -108,7 +117,48 @@ impl Develop {
         }
         Ok(if failures == 0 { Outcome::Done } else { Outcome::SomeFailed })
     }
+
+    fn settings(&self, order: &Order) -> Settings {
+        Settings { overwrite: self.overwrite, ..order.settings.clone() }
+    }
+
+    /// Plans the outputs and gives up everything else, before a byte of an input is read. Outputs are opened first, so
+    /// that nothing but they can be written; of very many files only their folders are kept.
+    fn open(
+        &self,
+        inputs: &[(PathBuf, Format)],
+        target: &Target,
+        orders: &[Order],
+        common: Common,
+    ) -> Result<(Vec<Job>, Opened)> {
+        let profiles = orders.iter().filter_map(|order| sandbox::profile(&order.settings));
+        let reach = sandbox::reading(&self.files).with_any(profiles, Access::Read);
+        self.sandbox.say(common);
+        if let Some(root) = target.root().filter(|_| target.needs_headers()) {
+            // The names of the outputs come out of the files.
+            self.sandbox.confine(&sandbox::writing(reach.clone(), &root.join("output")))?;
+        }
+        let jobs = plan_outputs(inputs, target)?;
+        make_folders(target, &jobs)?;
+        if jobs.len() > OPEN_AT_ONCE {
+            let reach = jobs.iter().fold(reach, |reach, job| sandbox::writing(reach, &job.output));
+            self.sandbox.confine(&reach)?;
+            return Ok((jobs, Vec::new()));
+        }
+        let open = |(job, order)| open_output(job, &self.settings(order));
+        let outputs: Vec<_> = jobs.iter().zip(orders).map(open).collect();
+        let open = outputs.iter().filter_map(|output| output.as_ref().ok());
+        let reach = open.fold(reach, |reach, output| sandbox::naming(reach, output, self.overwrite));
+        self.sandbox.confine(&reach)?;
+        Ok((jobs, outputs.into_iter().map(Some).collect()))
+    }
 }
+
+/// Outputs by job, open or with the reason why they are not, until they are taken.
+type Opened = Vec<Option<Result<Output, Error>>>;
+
+/// Outputs that are opened before the first file is read; each takes three descriptors.
+const OPEN_AT_ONCE: usize = 64;
 
 /// Makes the folders that a folder or a template names; the folder of a file must be there.
 fn make_folders(target: &Target, jobs: &[Job]) -> Result<()> {

@@ -11,7 +11,8 @@ use darkroot::{Inspection, Key, ProfileStore, Settings, settings};
 use darkroot_raw::Decoder;
 
 use crate::deadline::Deadline;
-use crate::{Outcome, picture};
+use crate::sandbox::{self, Sandbox};
+use crate::{Common, Outcome, picture};
 use darkroot::shown;
 
 /// Say what a raw file is: camera, levels, white balance, matrices, clipping
@@ -43,6 +44,9 @@ pub(crate) struct Inspect {
 
     #[command(flatten)]
     deadline: Deadline,
+
+    #[command(flatten)]
+    sandbox: Sandbox,
 }
 
 fn decoder() -> impl TypedValueParser<Value = Decoder> {
@@ -50,11 +54,15 @@ fn decoder() -> impl TypedValueParser<Value = Decoder> {
 }
 
 impl Inspect {
-    pub(crate) fn run(self) -> Result<Outcome> {
+    pub(crate) fn run(self, common: Common) -> Result<Outcome> {
+        self.sandbox.say(common);
+        let reach = sandbox::reading(&self.files);
         if let Some(out) = &self.preview {
             let [file] = &self.files[..] else {
                 anyhow::bail!("`--preview` takes the preview of one file; name one file");
             };
+            self.sandbox.confine(&sandbox::writing(reach, out))?;
+            common.start_threads();
             let saved =
                 self.deadline.over(file, 0, |_| (), || darkroot::save_preview(file, out, self.overwrite));
             return Ok(match saved {
@@ -76,6 +84,8 @@ impl Inspect {
         let settings = Settings { decoder: self.decoder, ..Settings::default() };
         let store = ProfileStore::user_folder()
             .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
+        self.sandbox.confine(&reach)?;
+        common.start_threads();
         let mut outcome = Outcome::Done;
         for (number, file) in self.files.iter().enumerate() {
             let after = self.files.len() - number - 1;

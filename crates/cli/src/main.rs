@@ -16,6 +16,7 @@ mod picture;
 mod profile;
 mod progress;
 mod recipe;
+mod sandbox;
 mod shell;
 mod usage;
 mod values;
@@ -58,17 +59,29 @@ struct Common {
 const THREADS_OF_CORE: usize = 4;
 
 impl Common {
+    /// Starts the threads that every command has: one that hears interrupts, and those that develop.
+    fn start_threads(self) {
+        interrupt::handle();
+        if let Some(threads) = self.threads {
+            // Fails only when the pool exists already, which nothing before this makes.
+            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        }
+    }
+
     /// Takes no more threads than the machine can use, and says so.
     fn bound_threads(&mut self) {
+        self.threads = self.threads.map(|asked| self.at_most(asked, "threads are used"));
+    }
+
+    /// A number of threads or processes that the machine can use: that which was asked for, or fewer, which is said.
+    fn at_most(self, asked: usize, of: &str) -> usize {
         let cores = darkroot_batch::system::threads();
         let most = THREADS_OF_CORE * cores;
-        if let Some(asked) = self.threads.filter(|asked| *asked > most) {
-            self.threads = Some(most);
-            if !self.quiet {
-                let machine = if cores == 1 { "one core".to_owned() } else { format!("{cores} cores") };
-                say(format_args!("note: this machine has {machine}: {most} threads are used, not {asked}"));
-            }
+        if asked > most && !self.quiet {
+            let machine = if cores == 1 { "one core".to_owned() } else { format!("{cores} cores") };
+            say(format_args!("note: this machine has {machine}: {most} {of}, not {asked}"));
         }
+        asked.min(most)
     }
 }
 
@@ -104,21 +117,25 @@ enum Outcome {
 fn main() -> ExitCode {
     let mut cli = usage::parse();
     keep_decoders_quiet();
-    interrupt::handle();
     cli.common.bound_threads();
-    if let Some(threads) = cli.common.threads {
-        // Fails only when the pool exists already, which nothing before this line makes.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let common = cli.common;
+    // Some commands give up what they do not need first, and must be the only thread then.
+    let is_confined = matches!(
+        cli.command,
+        Command::Develop(_) | Command::Inspect(_) | Command::Chart(_) | Command::Worker(_)
+    );
+    if !is_confined {
+        common.start_threads();
     }
     let outcome = match cli.command {
-        Command::Develop(command) => command.run(cli.common),
-        Command::Batch(command) => command.run(cli.common),
-        Command::Watch(command) => command.run(cli.common),
-        Command::Inspect(command) => command.run(),
+        Command::Develop(command) => command.run(common),
+        Command::Batch(command) => command.run(common),
+        Command::Watch(command) => command.run(common),
+        Command::Inspect(command) => command.run(common),
         Command::Recipe(command) => command.run(),
-        Command::Profile(command) => command.run(cli.common),
-        Command::Verify(command) => command.run(cli.common),
-        Command::Chart(command) => command.run(),
+        Command::Profile(command) => command.run(common),
+        Command::Verify(command) => command.run(common),
+        Command::Chart(command) => command.run(common),
         Command::Evaluate(command) => command.run(),
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),

@@ -35,5 +35,5 @@ pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
 pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), Error> {
-    files::write_whole(path, bytes, None, overwrite)
+    files::write_whole(path, bytes, overwrite)
 }

@@ -126,7 +126,7 @@ pub fn preview(
         &mut out,
     )
     .map_err(|source| Error::Encode { path: output.to_owned(), source })?;
-    files::write_whole(output, out.get_ref(), None, overwrite)
+    files::write_whole(output, out.get_ref(), overwrite)
 }
 
 const YELLOW: [u8; 3] = [255, 225, 0];

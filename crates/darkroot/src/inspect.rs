@@ -180,7 +180,7 @@ pub fn save_preview(input: &Path, output: &Path, overwrite: bool) -> Result<dark
     let preview =
         darkroot_raw::preview(&bytes).map_err(|source| Error::Raw { path: input.to_owned(), source })?;
     let preview = preview.ok_or_else(|| Error::NoPreview { path: input.to_owned() })?;
-    files::write_whole(output, &preview.jpeg, None, overwrite)?;
+    files::write_whole(output, &preview.jpeg, overwrite)?;
     Ok(preview)
 }
 

@@ -30,7 +30,7 @@ pub mod naming;
 pub use naming::{Job, NamingError, Target, plan_outputs};
 
 pub mod job;
-pub use job::{Control, Report, Step, develop, encode_picture};
+pub use job::{Control, Report, Step, develop, develop_into, encode_picture, open_output};
 
 pub mod inspect;
 pub use inspect::{Inspection, inspect, save_preview};
@@ -85,7 +85,7 @@ pub use nearest::nearest;
 pub mod path_text;
 
 pub mod files;
-pub use files::{abandon, write_text};
+pub use files::{Output, abandon, write_text};
 
 #[cfg(feature = "imagepipe")]
 mod pipe;

@@ -1,6 +1,7 @@
 //! Where profiles come from: the user's folder first, then those built into the program.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -85,7 +86,7 @@ impl ProfileStore {
     pub fn with_user_folder(folder: &Path) -> Self {
         let mut store = Self::default();
         let mut files = Vec::new();
-        collect(folder, &mut files);
+        collect(folder, 0, &mut HashSet::new(), &mut files);
         files.sort_by_cached_key(|path| (has_extension(path, "dcp"), path.clone()));
         for path in files {
             match Entry::read(&path) {
@@ -221,23 +222,31 @@ pub fn read(path: &Path) -> Result<Profile, Error> {
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
 pub fn write(profile: &Profile, path: &Path, overwrite: bool) -> Result<(), Error> {
-    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), None, overwrite)
+    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), overwrite)
 }
 
-/// As [`write()`], below a folder of outputs; a profile that is there is replaced.
+/// As [`write()`], to an output that was opened for this path before; a profile that is there is replaced.
 ///
 /// # Errors
-/// A link below the folder, or a file that cannot be written.
-pub fn write_below(profile: &Profile, path: &Path, tree: &crate::files::Tree) -> Result<(), Error> {
-    crate::files::write_whole(path, darkroot_profile::file::format(profile).as_bytes(), Some(tree), true)
+/// A file that cannot be written.
+pub fn write_into(output: crate::files::Output, profile: &Profile, path: &Path) -> Result<(), Error> {
+    output.write_whole(path, darkroot_profile::file::format(profile).as_bytes(), true)
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+/// Folders inside folders that are still looked into.
+const DEEPEST: usize = 8;
+
+/// The profiles of a folder and of those in it, each folder once, by whatever links it is met.
+fn collect(folder: &Path, depth: usize, seen: &mut HashSet<PathBuf>, files: &mut Vec<PathBuf>) {
+    let is_new = folder.canonicalize().is_ok_and(|place| seen.insert(place));
+    if depth > DEEPEST || !is_new {
+        return;
+    }
     // A folder that is missing or closed to us holds no profiles.
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.is_dir() {
-            collect(&path, files);
+            collect(&path, depth + 1, seen, files);
         } else if has_extension(&path, "toml") || has_extension(&path, "dcp") {
             files.push(path);
         }
@@ -257,6 +266,18 @@ mod tests {
         let store = ProfileStore::builtin();
         assert!(store.faults.is_empty(), "{:?}", store.faults);
         assert_eq!(store.all().len(), BUILTIN.len());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_that_lead_round_in_circles_end() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("a")).unwrap();
+        for link in ["a/up", "a/again", "b"] {
+            std::os::unix::fs::symlink(folder.path(), folder.path().join(link)).unwrap();
+        }
+        std::fs::write(folder.path().join("a/broken.toml"), "x").unwrap();
+        assert_eq!(ProfileStore::with_user_folder(folder.path()).faults.len(), 1);
     }
 
     #[test]

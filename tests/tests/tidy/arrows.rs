@@ -9,9 +9,10 @@ use darkroot_tests::root;
 use crate::files;
 
 /// Which of our crates each crate uses, as `docs/architecture.md` has it. Tests and benches may use any.
-const ARROWS: [(&str, &[&str]); 13] = [
+const ARROWS: [(&str, &[&str]); 14] = [
     ("colour", &[]),
     ("photo", &["colour"]),
+    ("sandbox", &[]),
     ("profile", &["colour"]),
     ("raw", &["colour", "photo"]),
     ("encode", &["colour", "photo"]),
@@ -20,9 +21,9 @@ const ARROWS: [(&str, &[&str]); 13] = [
     ("develop", &["colour", "photo", "profile"]),
     ("calibrate", &["chart", "colour", "photo", "profile"]),
     ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "photo", "profile", "raw"]),
-    ("batch", &["colour", "darkroot", "develop", "encode", "photo", "profile", "raw"]),
+    ("batch", &["colour", "darkroot", "develop", "encode", "photo", "profile", "raw", "sandbox"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
-    ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw"]),
+    ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw", "sandbox"]),
     ("tests", &["chart", "colour", "darkroot", "develop", "photo", "profile", "simulate"]),
 ];
 

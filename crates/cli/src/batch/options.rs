@@ -12,6 +12,7 @@ use darkroot_batch::{
 
 use crate::Common;
 use crate::picture::Picture;
+use crate::sandbox::Sandbox;
 use crate::values;
 
 /// Which files, where to, and how much of the machine.
@@ -90,6 +91,9 @@ pub(crate) struct Work {
     #[arg(long, value_name = "I/N", value_parser = shard, help_heading = "Machine")]
     shard: Option<Shard>,
 
+    #[command(flatten, next_help_heading = "Machine")]
+    sandbox: Sandbox,
+
     #[command(flatten)]
     pub(crate) picture: Picture,
 }
@@ -159,9 +163,11 @@ impl Work {
     pub(crate) fn crew(&self, common: Common) -> Result<CrewOptions> {
         let program = std::env::current_exe().context("this program cannot find itself to start workers")?;
         let threads = common.threads.unwrap_or_else(system::threads).max(1);
+        let arguments = if self.sandbox.is_on() { &["worker"][..] } else { &["worker", "--no-sandbox"] };
+        self.sandbox.say(common);
         Ok(CrewOptions {
-            workers: Workers::Processes(program, vec!["worker".into()]),
-            jobs: self.jobs.map_or(threads, usize::from),
+            workers: Workers::Processes(program, arguments.iter().map(Into::into).collect()),
+            jobs: self.jobs.map_or(threads, |jobs| common.at_most(jobs.into(), "files at once")),
             threads,
             memory: self.memory.unwrap_or_else(|| system::free_memory() / 2),
             timeout: self.timeout,

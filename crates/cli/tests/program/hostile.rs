@@ -322,4 +322,6 @@ fn threads_beyond_use_are_not_started() {
     );
     let run = desk.run(&["batch", ".", "-o", "out", "--threads", "5000"]);
     assert!(run.code == 0 && run.err.contains("not 5000"), "{}", run.err);
+    let run = desk.run(&["batch", ".", "-o", "other", "--jobs", "5000"]);
+    assert!(run.code == 0 && run.err.contains("files at once, not 5000"), "{}", run.err);
 }

@@ -19,6 +19,7 @@ mod paths;
 mod profile_commands;
 mod profiles;
 mod recipe;
+mod sandbox;
 mod special;
 mod stopped;
 mod terminal;

@@ -62,7 +62,17 @@ fn is_writing(desk: &Desk, process: u32) -> bool {
     let folder = desk.folder.path().canonicalize().unwrap();
     let nameless = |path: PathBuf| path.starts_with(&folder) && path.to_string_lossy().ends_with("(deleted)");
     let named = |name: &String| name.starts_with(".darkroot-");
-    open.filter_map(|e| std::fs::read_link(e.path()).ok()).any(nameless) || desk.names().iter().any(named)
+    let is_open = open.filter_map(|e| std::fs::read_link(e.path()).ok()).any(nameless)
+        || desk.names().iter().any(named);
+    is_open && hears_signals(process)
+}
+
+/// Whether a process has a say in what a SIGTERM does to it. The output is open before that.
+fn hears_signals(process: u32) -> bool {
+    const SIGTERM: u64 = 1 << 14;
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap_or_default();
+    u64::from_str_radix(caught.trim(), 16).is_ok_and(|caught| caught & SIGTERM != 0)
 }
 
 /// Starts the program on a picture that takes long to write and waits until it has begun to write.

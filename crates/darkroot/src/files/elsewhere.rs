@@ -50,6 +50,11 @@ impl Unfinished {
         self.file.as_file()
     }
 
+    /// Whether it has a hidden name meanwhile.
+    pub(crate) fn is_named(&self) -> bool {
+        true
+    }
+
     /// Gives it its name. Without `overwrite` something that has it already is an [`io::ErrorKind::AlreadyExists`].
     pub(crate) fn finish(self, overwrite: bool) -> io::Result<()> {
         let named =

@@ -5,6 +5,9 @@
 mod special;
 pub use special::{Special, open};
 
+mod output;
+pub use output::Output;
+
 #[cfg(unix)]
 mod unix;
 #[cfg(unix)]
@@ -16,7 +19,7 @@ mod elsewhere;
 use elsewhere as system;
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -133,47 +136,6 @@ pub(crate) enum Failed<E> {
     Other(E),
 }
 
-/// Writes a file through `fill`: to one that has no name (where the system has none such, to a hidden one), flushed to
-/// the disk, then named. If anything fails, what was at `path` stays. Without `overwrite` an existing file is an
-/// [`io::ErrorKind::AlreadyExists`], even one that appears meanwhile. Standard output gets the whole of it at the end.
-pub(crate) fn write<E>(
-    path: &Path,
-    tree: Option<&Tree>,
-    overwrite: bool,
-    fill: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
-) -> Result<(), Failed<E>> {
-    if is_stream(path) {
-        return to_stdout(fill);
-    }
-    let place = system::Place::open(path, tree).map_err(Failed::Io)?;
-    let unfinished = place.unfinished().map_err(Failed::Io)?;
-    filled(unfinished.file(), fill)?;
-    unfinished.file().sync_all().map_err(Failed::Io)?;
-    unfinished.finish(overwrite).map_err(Failed::Io)
-}
-
-fn filled<E>(
-    file: &File,
-    fill: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>,
-) -> Result<(), Failed<E>> {
-    let mut out = BufWriter::with_capacity(1 << 20, file);
-    fill(&mut out).map_err(Failed::Other)?;
-    out.flush().map_err(Failed::Io)
-}
-
-/// Formats go back and forth while they write, which a stream cannot: it gets what a file without a name holds.
-fn to_stdout<E>(fill: impl FnOnce(&mut BufWriter<&File>) -> Result<(), E>) -> Result<(), Failed<E>> {
-    let mut file = tempfile::tempfile().map_err(Failed::Io)?;
-    filled(&file, fill)?;
-    let mut copy = || {
-        file.seek(SeekFrom::Start(0))?;
-        let mut out = io::stdout().lock();
-        io::copy(&mut file, &mut out)?;
-        out.flush()
-    };
-    copy().map_err(Failed::Io)
-}
-
 /// The folder that a path lies in.
 pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -218,26 +180,17 @@ pub(crate) fn append(path: &Path, head: &[u8], lines: &[u8]) -> Result<(), Error
     attempt().map_err(|e| Error::write(path, e))
 }
 
-/// Writes bytes as a file through [`write`]; missing folders are made.
+/// Writes bytes as a file through an [`Output`]; missing folders are made.
 ///
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
-pub(crate) fn write_whole(
-    path: &Path,
-    bytes: &[u8],
-    tree: Option<&Tree>,
-    overwrite: bool,
-) -> Result<(), Error> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), Error> {
     if !overwrite && !is_stream(path) && path.symlink_metadata().is_ok() {
         return Err(Error::Exists { path: path.to_owned() });
     }
-    if tree.is_none() {
-        fs::create_dir_all(folder_of(path)).map_err(|e| Error::write(path, e))?;
-    }
-    write(path, tree, overwrite, |out| out.write_all(bytes)).map_err(|failed| match failed {
-        Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: path.to_owned() },
-        Failed::Io(e) | Failed::Other(e) => Error::write(path, e),
-    })
+    fs::create_dir_all(folder_of(path)).map_err(|e| Error::write(path, e))?;
+    let output = Output::open(path, None).map_err(|e| Error::write(path, e))?;
+    output.write_whole(path, bytes, overwrite)
 }
 
 /// Writes a text as a file, whole or not at all. Missing folders are made.
@@ -245,7 +198,7 @@ pub(crate) fn write_whole(
 /// # Errors
 /// A file that exists and is not to be replaced, or that cannot be written.
 pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), Error> {
-    write_whole(path, text.as_bytes(), None, overwrite)
+    write_whole(path, text.as_bytes(), overwrite)
 }
 
 #[cfg(test)]

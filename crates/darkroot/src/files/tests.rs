@@ -3,8 +3,10 @@
 use super::*;
 
 fn put(path: &Path, text: &str, tree: Option<&Tree>, overwrite: bool) -> Result<(), io::Error> {
-    write(path, tree, overwrite, |out| out.write_all(text.as_bytes())).map_err(|failed| match failed {
-        Failed::Io(e) | Failed::Other(e) => e,
+    Output::open(path, tree)?.write(overwrite, |out| out.write_all(text.as_bytes())).map_err(|failed| {
+        match failed {
+            Failed::Io(e) | Failed::Other(e) => e,
+        }
     })
 }
 
@@ -26,7 +28,8 @@ fn an_output_is_the_old_one_or_the_whole_new_one() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "one");
     put(&path, "two", None, true).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), "two");
-    let failed = write(&path, None, true, |out| out.write_all(b"half").and(Err(io::Error::other("no"))));
+    let output = Output::open(&path, None).unwrap();
+    let failed = output.write(true, |out| out.write_all(b"half").and(Err(io::Error::other("no"))));
     assert!(matches!(failed, Err(Failed::Other(_))));
     assert_eq!(
         (fs::read_to_string(&path).unwrap().as_str(), names(folder.path())),

@@ -53,7 +53,7 @@ impl Place {
         }
         loop {
             let name = fresh();
-            let flags = OFlags::CREATE | OFlags::EXCL | OFlags::WRONLY | OFlags::CLOEXEC | OFlags::NOFOLLOW;
+            let flags = OFlags::CREATE | OFlags::EXCL | OFlags::RDWR | OFlags::CLOEXEC | OFlags::NOFOLLOW;
             match openat(&self.scratch.0, name.as_str(), flags, OUTPUT) {
                 Ok(file) => {
                     let listed = Listed::new(&self.scratch.1.join(&name));
@@ -69,7 +69,7 @@ impl Place {
 /// A file without a name, where system and disk have such and can give it one later.
 #[cfg(target_os = "linux")]
 fn nameless(folder: &OwnedFd) -> io::Result<Option<File>> {
-    match openat(folder, ".", OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC, OUTPUT) {
+    match openat(folder, ".", OFlags::TMPFILE | OFlags::RDWR | OFlags::CLOEXEC, OUTPUT) {
         Ok(file) => {
             let file = File::from(file);
             // Without /proc it could never get a name.
@@ -110,6 +110,11 @@ pub(crate) struct Unfinished {
 impl Unfinished {
     pub(crate) fn file(&self) -> &File {
         &self.file
+    }
+
+    /// Whether it has a hidden name meanwhile.
+    pub(crate) fn is_named(&self) -> bool {
+        self.named.is_some()
     }
 
     /// Gives it its name. Without `overwrite` something that has it already is an [`io::ErrorKind::AlreadyExists`], even if

@@ -11,7 +11,7 @@ use darkroot_encode::{Format, Outline};
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 use darkroot_photo::{Capture, Picture, PictureSpace};
 
-use crate::files::{self, Failed};
+use crate::files::{self, Failed, Output};
 use crate::photo::Photo;
 use crate::settings::{Engine, Settings};
 use crate::store::ProfileStore;
@@ -60,9 +60,17 @@ pub fn develop(
     store: &ProfileStore,
     control: Control<'_>,
 ) -> Result<Report, Error> {
+    let output = open_output(job, settings)?;
+    develop_into(output, job, || files::read(&job.input), settings, store, control)
+}
+
+/// Opens the output of a job, to be filled by [`develop_into`].
+///
+/// # Errors
+/// An output that exists and is not to be replaced, or a place where nothing can be written.
+pub fn open_output(job: &Job, settings: &Settings) -> Result<Output, Error> {
     refuse_existing(job, settings)?;
-    control.step(Step::Decode);
-    develop_bytes(job, || files::read(&job.input), settings, store, control)
+    Output::open(&job.output, settings.tree.as_ref()).map_err(|e| Error::write(&job.output, e))
 }
 
 /// Without `overwrite`, an output that exists is an error: before any work is done.
@@ -73,11 +81,13 @@ fn refuse_existing(job: &Job, settings: &Settings) -> Result<(), Error> {
     Ok(())
 }
 
-/// As [`develop()`], with the bytes of the input from `read`.
+/// As [`develop()`], with the output open already, and with the bytes of the input from `read`. Nothing else is opened
+/// but the profile that the settings name.
 ///
 /// # Errors
 /// As [`develop()`].
-pub fn develop_bytes(
+pub fn develop_into(
+    to: Output,
     job: &Job,
     read: impl FnOnce() -> Result<Vec<u8>, Error>,
     settings: &Settings,
@@ -86,7 +96,7 @@ pub fn develop_bytes(
 ) -> Result<Report, Error> {
     let start = Instant::now();
     let (input, output) = (&job.input, &job.output);
-    refuse_existing(job, settings)?;
+    control.step(Step::Decode);
     let format = format_of(output, settings);
     let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
     let photo = open(input, &read()?, settings)?;
@@ -106,26 +116,26 @@ pub fn develop_bytes(
                     Bits::Sixteen => write_in_bands::<u16>,
                     Bits::Float => write_in_bands::<f32>,
                 };
-                write(job, settings, format, &metadata, &plan, cancel)?;
+                write(to, job, settings, format, &metadata, &plan, cancel)?;
                 (report, metadata, None)
             } else {
                 let picture = plan
                     .render(plan.whole(Scale::FULL), cancel)
                     .map_err(|Cancelled| Error::Cancelled { path: input.clone() })?;
-                (report, metadata, Some(picture))
+                (report, metadata, Some((picture, to)))
             }
         }
         Engine::Imagepipe => {
             let (picture, report) = second_engine(input, photo.capture(), &recipe)?;
-            (report, metadata_for(photo.capture(), &picture.space), Some(picture))
+            (report, metadata_for(photo.capture(), &picture.space), Some((picture, to)))
         }
     };
     control.step(Step::Write);
-    if let Some(picture) = picture {
+    if let Some((picture, to)) = picture {
         if let Some(seen) = &mut control.seen {
             seen(&picture);
         }
-        write_file(job, settings, |out| {
+        write_file(to, job, settings, |out| {
             Ok(darkroot_encode::write(&picture, format, &settings.encode, &metadata, out)?)
         })?;
     }
@@ -171,6 +181,7 @@ impl From<darkroot_encode::Error> for Unwritten {
 
 /// Develops and writes at once: each band goes into the file when it is finished, by the thread that finished it.
 fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sample>(
+    to: Output,
     job: &Job,
     settings: &Settings,
     format: Format,
@@ -179,7 +190,7 @@ fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sampl
     cancel: &Cancel,
 ) -> Result<(), Error> {
     let outline = Outline { size: plan.size(), space: plan.picture_space() };
-    write_file(job, settings, |out| {
+    write_file(to, job, settings, |out| {
         darkroot_encode::write_in_bands(&outline, format, &settings.encode, metadata, out, |rows, take| {
             plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[T]| {
                 Ok(take(band, samples)?)
@@ -190,12 +201,13 @@ fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sampl
 
 /// Writes the output through `fill`, whole or not at all.
 fn write_file(
+    to: Output,
     job: &Job,
     settings: &Settings,
     fill: impl FnOnce(&mut io::BufWriter<&std::fs::File>) -> Result<(), Unwritten>,
 ) -> Result<(), Error> {
     let output = &job.output;
-    files::write(output, settings.tree.as_ref(), settings.overwrite, fill).map_err(|failed| match failed {
+    to.write(settings.overwrite, fill).map_err(|failed| match failed {
         Failed::Io(e) if e.kind() == io::ErrorKind::AlreadyExists => Error::Exists { path: output.clone() },
         Failed::Io(e) | Failed::Other(Unwritten::Encode(darkroot_encode::Error::Io(e))) => {
             Error::write(output, e)

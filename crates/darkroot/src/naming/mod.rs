@@ -125,6 +125,13 @@ pub enum NamingError {
 }
 
 impl Target {
+    /// The folder below which all outputs of a template lie, whatever stands in the files; none for other targets.
+    pub fn root(&self) -> Option<PathBuf> {
+        let Self::Template(text) = self else { return None };
+        let fixed = &text[..text.find('{').unwrap_or(text.len())];
+        Some(fixed.rsplit_once(std::path::is_separator).map_or_else(PathBuf::new, |(root, _)| root.into()))
+    }
+
     /// What a person means by an output: standard output if it is `-`, a template if it has braces, a folder if it is
     /// one or ends like one, else a file.
     ///
@@ -177,7 +184,7 @@ impl Target {
     }
 
     /// Whether file names need what stands inside the files (camera, date).
-    fn needs_headers(&self) -> bool {
+    pub fn needs_headers(&self) -> bool {
         matches!(self, Self::Template(t) if template::needs_headers(t))
     }
 }

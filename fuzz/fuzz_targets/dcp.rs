@@ -1,0 +1,19 @@
+#![no_main]
+
+//! DNG camera profiles.
+
+use darkroot_profile::export::dcp::{Dcp, camera, import};
+use libfuzzer_sys::{fuzz_mutator, fuzz_target};
+
+fuzz_mutator!(|data: &mut [u8], size: usize, max_size: usize, seed: u32| {
+    darkroot_fuzz::mutate_tiff(data, size, max_size, seed)
+});
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = (import(bytes), camera(bytes));
+    if let Ok(dcp) = Dcp::read(bytes) {
+        for light in &dcp.lights {
+            let _ = light.xyz([0.2, 0.4, 0.1]);
+        }
+    }
+});
