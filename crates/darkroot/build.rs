@@ -1,4 +1,4 @@
-//! Builds the profiles of `profiles/` into the library: a table of their paths and texts.
+//! Builds the profiles of `profiles/` into the library: a table of the names of their cameras and of their texts.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -14,10 +14,34 @@ fn main() -> io::Result<()> {
         println!("cargo::rerun-if-changed={}", file.display());
         let name = file.strip_prefix(&root).unwrap_or(file).display().to_string();
         let path = fs::canonicalize(file)?.display().to_string();
-        table.push_str(&format!("    ({name:?}, include_str!({path:?})),\n"));
+        let camera = Camera::of(&fs::read_to_string(file)?);
+        let Camera { make, model, aliases } =
+            camera.ok_or_else(|| io::Error::other(format!("{name}: no camera")))?;
+        table.push_str(&format!("    BuiltIn {{ make: {make}, model: {model}, aliases: &{aliases}, "));
+        table.push_str(&format!("text: include_str!({path:?}) }},\n"));
     }
     table.push_str("]\n");
     fs::write(PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default()).join("profiles.rs"), table)
+}
+
+/// The names of a profile's camera as they stand in its file: TOML's texts and lists of texts are those of Rust, as long as
+/// they hold nothing strange. The test of the store reads every profile whole and compares.
+struct Camera {
+    make: String,
+    model: String,
+    aliases: String,
+}
+
+impl Camera {
+    fn of(text: &str) -> Option<Self> {
+        let section = text.split_once("[camera]")?.1.split("\n[").next()?;
+        let value = |key: &str| {
+            let line =
+                section.lines().find_map(|line| line.strip_prefix(key)?.trim_start().strip_prefix('='));
+            line.map(|value| value.trim().to_owned())
+        };
+        Some(Self { make: value("make")?, model: value("model")?, aliases: value("aliases")? })
+    }
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> io::Result<()> {

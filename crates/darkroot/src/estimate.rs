@@ -10,7 +10,7 @@ use darkroot_profile::camera::{Estimate, Observation, Peers};
 use darkroot_profile::{Origin, Profile, ProfileCamera, Sensitivities};
 use darkroot_raw::Limits;
 
-use crate::{Error, store};
+use crate::{Error, ProfileStore};
 
 /// Light of a matrix that names none, as lists of camera matrices have it, K.
 const LISTED: f64 = 6504.0;
@@ -121,9 +121,9 @@ fn light(kelvin: f64) -> Spectrum {
 fn peers() -> Option<&'static Peers> {
     static PEERS: OnceLock<Option<Peers>> = OnceLock::new();
     let make = || {
-        let known: Vec<Sensitivities> = store::builtin()
-            .filter_map(|profile| Some(profile.ok()?.known_camera()?.sensitivities().clone()))
-            .collect();
+        let store = ProfileStore::builtin();
+        let known = store.all().into_iter().filter_map(|found| found.profile.known_camera());
+        let known: Vec<Sensitivities> = known.map(|camera| camera.sensitivities().clone()).collect();
         Peers::with_builtin(&known)
     };
     PEERS.get_or_init(make).as_ref()

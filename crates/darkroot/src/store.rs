@@ -13,8 +13,16 @@ use crate::Error;
 use crate::settings::ProfileChoice;
 use crate::shown;
 
-/// Path inside `profiles/` and text of every profile of this build.
-const BUILTIN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/profiles.rs"));
+/// A profile of this build.
+struct BuiltIn {
+    make: &'static str,
+    model: &'static str,
+    aliases: &'static [&'static str],
+    text: &'static str,
+}
+
+/// Every profile of this build.
+const BUILTIN: &[BuiltIn] = include!(concat!(env!("OUT_DIR"), "/profiles.rs"));
 
 /// A profile and where it was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,33 +52,54 @@ pub struct ProfileStore {
     pub faults: Vec<String>,
 }
 
-/// A profile that is there; that of a DCP is made when it is first wanted, which takes some tenths of a second.
+/// A profile that is there. One that is built in is read when it is first wanted, and so is a DCP, which takes some tenths of
+/// a second.
 #[derive(Debug, Clone)]
 struct Entry {
     camera: ProfileCamera,
-    path: PathBuf,
+    source: Source,
     found: OnceLock<Option<Found>>,
 }
 
+/// Where a profile is read from.
+#[derive(Debug, Clone)]
+enum Source {
+    File(PathBuf),
+    BuiltIn(&'static str),
+}
+
 impl Entry {
-    fn of(profile: Profile, place: String) -> Self {
-        let camera = profile.camera().clone();
-        Self { camera, path: PathBuf::new(), found: OnceLock::from(Some(Found { profile, place })) }
+    fn built_in(profile: &BuiltIn) -> Self {
+        let aliases = profile.aliases.iter().map(|&alias| alias.to_owned()).collect();
+        let camera =
+            ProfileCamera { make: profile.make.to_owned(), model: profile.model.to_owned(), aliases };
+        Self { camera, source: Source::BuiltIn(profile.text), found: OnceLock::new() }
     }
 
     /// A file of the user's folder. All that can be wrong with a file is said here.
     fn read(path: &Path) -> Result<Self, Error> {
         if !has_extension(path, "dcp") {
-            return Ok(Self::of(read(path)?, shown(path)));
+            let found = Found { profile: read(path)?, place: shown(path) };
+            let camera = found.profile.camera().clone();
+            return Ok(Self {
+                camera,
+                source: Source::File(path.to_owned()),
+                found: OnceLock::from(Some(found)),
+            });
         }
         let bytes = crate::files::read(path)?;
         let camera = dcp::camera(&bytes).map_err(|source| Error::Dcp { path: path.to_owned(), source })?;
-        Ok(Self { camera, path: path.to_owned(), found: OnceLock::new() })
+        Ok(Self { camera, source: Source::File(path.to_owned()), found: OnceLock::new() })
     }
 
     fn get(&self) -> Option<&Found> {
-        let place = || shown(&self.path);
-        let make = || read(&self.path).ok().map(|profile| Found { profile, place: place() });
+        let make = || match &self.source {
+            Source::File(path) => Some(Found { profile: read(path).ok()?, place: shown(path) }),
+            Source::BuiltIn(text) => {
+                let profile = darkroot_profile::file::parse(text).ok()?;
+                Some(Found { profile, place: "built in".to_owned() })
+            }
+        };
         self.found.get_or_init(make).as_ref()
     }
 }
@@ -174,21 +203,9 @@ impl ProfileStore {
     }
 
     fn with_builtin(mut self) -> Self {
-        for profile in builtin() {
-            match profile {
-                Ok(profile) => self.entries.push(Entry::of(profile, "built in".to_owned())),
-                Err(fault) => self.faults.push(fault),
-            }
-        }
+        self.entries.extend(BUILTIN.iter().map(Entry::built_in));
         self
     }
-}
-
-/// The profiles built into the program; what is wrong with one, in words.
-pub(crate) fn builtin() -> impl Iterator<Item = Result<Profile, String>> {
-    BUILTIN.iter().map(|(name, text)| {
-        darkroot_profile::file::parse(text).map_err(|fault| format!("built-in profile {name}: {fault}"))
-    })
 }
 
 /// Whether a profile is for a camera, by any of the camera's names.
@@ -263,9 +280,12 @@ mod tests {
 
     #[test]
     fn every_built_in_profile_is_sound() {
-        let store = ProfileStore::builtin();
-        assert!(store.faults.is_empty(), "{:?}", store.faults);
-        assert_eq!(store.all().len(), BUILTIN.len());
+        assert_eq!(BUILTIN.len(), 52);
+        for built_in in BUILTIN {
+            let profile = darkroot_profile::file::parse(built_in.text);
+            let camera = profile.map(|profile| profile.camera().clone());
+            assert_eq!(camera, Ok(Entry::built_in(built_in).camera), "{}", built_in.model);
+        }
     }
 
     #[cfg(unix)]

@@ -38,7 +38,8 @@ fn files(begin: &str) -> Vec<PathBuf> {
 #[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
 fn a_matrix_tells_as_much_as_a_chart() {
     let set = |name: &str, reflectances| ReflectanceSet { name: name.to_owned(), reflectances };
-    let other: Vec<PathBuf> = files("cam_camspec_").into_iter().chain(files("cam_butcherg_")).step_by(2).collect();
+    let other: Vec<PathBuf> =
+        files("cam_camspec_").into_iter().chain(files("cam_butcherg_")).step_by(2).collect();
     let outcome = evaluate(&Request {
         published: published::read(&data::folder().join("published_matrices_A_D65.csv")).unwrap(),
         prior: files("cam_rawtoaces_"),
@@ -67,7 +68,9 @@ fn a_matrix_tells_as_much_as_a_chart() {
             all.iter().sum::<f64>() / all.len() as f64
         };
         let [matrix, spectrum, white, chart] = Method::ALL.map(mean);
-        println!("{light}: matrix {matrix:.3}, estimate {spectrum:.3}, by the white {white:.3}, chart {chart:.3}");
+        println!(
+            "{light}: matrix {matrix:.3}, estimate {spectrum:.3}, by the white {white:.3}, chart {chart:.3}"
+        );
         assert!(spectrum < 0.65 * matrix && white < 0.65 * matrix, "{light}: {spectrum} {white} {matrix}");
         assert!(spectrum < 1.12 * chart, "{light}: {spectrum} {chart}");
     }

@@ -15,7 +15,8 @@ fn cameras() -> Vec<(String, Profile, String)> {
     let known = all.all().into_iter().filter(|found| found.profile.known_camera().is_some());
     known
         .map(|found| {
-            let file = found.profile.origin().sensitivities.trim_start_matches("cam_").trim_end_matches(".csv");
+            let file =
+                found.profile.origin().sensitivities.trim_start_matches("cam_").trim_end_matches(".csv");
             (found.profile.camera().name(), found.profile.clone(), file.to_owned())
         })
         .collect()
