@@ -41,7 +41,7 @@ fn developed(desk: &Desk, arguments: &[&str]) -> (Vec<u8>, String) {
 fn the_colours_of_the_files_own_matrix_are_said() {
     let desk = Desk::with_dng();
     desk.put("b.nef", small_nef());
-    assert!(desk.develop(&["a.dng"]).err.contains("colours: matrix in the file"));
+    assert!(desk.develop(&["a.dng", "--profile", "matrix"]).err.contains("colours: matrix in the file"));
     let nef = desk.develop(&["b.nef", "--profile", "matrix"]).err;
     assert!(nef.contains("colours: camera matrix"), "{nef}");
 }
@@ -81,7 +81,7 @@ fn a_profile_file_that_is_broken_says_where() {
     let good = profile("Darkroot", "Simulated One");
     let breaks: [(&str, &str, &str); 6] = [
         ("[camera]", "[camera", "profile"),
-        ("version = 1", "version = 2", "version 2"),
+        ("version = 1", "version = 7", "version 7"),
         ("\"(rb)^1/2\" = [0.0142, -0.05, 0.0049]\n", "", "missing"),
         ("0.68", "nan", "not a finite number"),
         ("origin", "orgin", "orgin"),
@@ -99,9 +99,38 @@ fn a_profile_file_that_is_broken_says_where() {
 }
 
 #[test]
+fn a_camera_without_a_profile_is_estimated_from_its_matrix() {
+    let desk = Desk::with_dng();
+    let (matrix, _) = developed(&desk, &["--profile", "matrix"]);
+    let (estimated, err) = developed(&desk, &[]);
+    assert!(estimated != matrix);
+    assert!(err.contains("colours: estimated from the camera's matrix (expected dE2000 "), "{err}");
+
+    // What develop used can be kept, shown, exported and used again: the same picture comes of it.
+    let made = desk.run(&["profile", "from-matrix", "a.dng", "-o", "own.toml"]);
+    assert!(made.code == 0 && made.err.contains("expected dE2000") && made.err.contains("by itself"), "{}", made.err);
+    let (again, err) = developed(&desk, &["--profile", "own.toml"]);
+    assert!(err.contains("(its sensitivities)"), "{err}");
+    assert!(again == estimated);
+    let shown = desk.run(&["profile", "show", "own.toml"]).out;
+    assert!(shown.contains("for they are an estimate") && shown.contains("D65: xy"), "{shown}");
+    for (to, light, file) in [("icc", "FL11", "o.icc"), ("cube", "3000K", "o.cube"), ("clf", "LED-B3", "o.clf")] {
+        let run = desk.run(&["profile", "export", "own.toml", "--to", to, "--light", light, "-o", file]);
+        assert_eq!(run.code, 0, "{to}: {}", run.err);
+    }
+
+    let named = desk.run(&["profile", "from-matrix", "nikon d90", "-o", "d90.toml"]);
+    assert!(named.code == 0 && named.err.contains("Nikon D90"), "{}", named.err);
+    let unknown = desk.run(&["profile", "from-matrix", "Nikon D9999", "-o", "x.toml"]);
+    assert!(unknown.code == 1 && unknown.err.contains("profile list --all"), "{}", unknown.err);
+    let all = desk.run(&["profile", "list", "--all"]).out;
+    assert!(all.lines().count() > 700 && all.contains("Nikon D90"), "{}", all.lines().count());
+}
+
+#[test]
 fn a_profile_in_the_users_folder_is_found_by_its_camera() {
     let desk = Desk::with_dng();
-    let (matrix, _) = developed(&desk, &[]);
+    let (matrix, _) = developed(&desk, &["--profile", "matrix"]);
     let folder = desk.data.path().join("darkroot/profiles/any/depth");
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("other.toml"), profile("Nikon", "D700")).unwrap();
@@ -166,7 +195,7 @@ fn a_broken_profile_in_the_users_folder_is_said_and_left_out() {
     std::fs::write(folder.join("readme.txt"), "no profile").unwrap();
     let (_, err) = developed(&desk, &[]);
     assert!(err.contains("warning: ") && err.contains("broken.toml") && err.contains("not used"), "{err}");
-    assert!(!err.contains("readme.txt") && err.contains("matrix in the file"), "{err}");
+    assert!(!err.contains("readme.txt") && err.contains("the camera's matrix"), "{err}");
 }
 
 #[test]
