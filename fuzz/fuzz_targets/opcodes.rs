@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-use darkroot::{Cancel, Photo, ProfileStore, Settings, View};
+use darkroot::{Cancel, Photo, ProfileChoice, ProfileStore, Settings, View};
 use darkroot_fuzz::LIMITS;
 use darkroot_photo::Rect;
 use darkroot_tests::small_raws;
@@ -20,6 +20,7 @@ fuzz_target!(init: darkroot_fuzz::expect_panics_of_decoders(), |bytes: &[u8]| {
     if photo.capture().mosaic_corrections.is_empty() && photo.capture().picture_corrections.is_empty() {
         return;
     }
-    let Ok(plan) = photo.plan(&photo.analyse_as_asked(), &STORE, &Settings::default()) else { return };
+    let settings = Settings { profile: ProfileChoice::Matrix, ..Settings::default() };
+    let Ok(plan) = photo.plan(&photo.analyse_as_asked(), &STORE, &settings) else { return };
     let _ = plan.render(View::of(Rect { x: 8, y: 8, width: 16, height: 16 }), &Cancel::default());
 });

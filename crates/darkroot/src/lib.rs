@@ -15,6 +15,9 @@
 //! file, [`inspect()`] says what a file is. Outputs get their names when they are complete: an output is
 //! absent, the old one, or the whole new one.
 //!
+//! Call it from threads of your own or of no pool, not from inside an iteration of rayon's: there a thread that waits would
+//! begin the next file in the midst of one, until its stack is full (`docs/security.md`, "Stacks").
+//!
 //! **What it does not do:** it prints nothing and reads no arguments.
 
 pub mod settings;

@@ -9,6 +9,9 @@ use crate::screen::{DNG_VERSION, LINEARIZATION_TABLE};
 use crate::tiff::Directories;
 use crate::{Error, Limits, TooLarge, Unknown};
 
+/// How the library begins to say that it panicked: it catches that itself, so that our guard does not see it.
+const PANICKED: &str = "Caught a panic";
+
 /// Decodes the samples of `header` with rawloader.
 pub(crate) fn decode(bytes: &[u8], header: Capture, limits: &Limits) -> Result<Capture, Error> {
     if let Some(reason) = known_wrong(bytes, &header)? {
@@ -19,10 +22,13 @@ pub(crate) fn decode(bytes: &[u8], header: Capture, limits: &Limits) -> Result<C
         return Err(Error::TooLarge(TooLarge::Frame(size)));
     }
     let image = rawloader::decode(&mut std::io::Cursor::new(bytes)).map_err(|e| {
-        // The library puts the word before the sentence.
+        // The library puts a word before the sentence, and where it panicked a plea to its users behind it.
         let text = e.to_string();
-        let message = text.trim_start_matches("RawLoaderError: ").trim_matches('"').to_owned();
-        unknown(&header, Unknown::Decoder { message })
+        let message = text.trim_start_matches("RawLoaderError: ").trim_matches('"');
+        if message.starts_with(PANICKED) {
+            return Error::DecoderFailed { decoder: "rawloader" };
+        }
+        unknown(&header, Unknown::Decoder { message: message.to_owned() })
     })?;
     let seen = Size { width: image.width, height: image.height };
     let samples = header.counts.layout().planes();

@@ -4,6 +4,8 @@ use std::time::{Duration, Instant};
 
 use super::*;
 
+mod found;
+
 /// Field types of TIFF 6.0, section 2.
 const BYTE: u16 = 1;
 const ASCII: u16 = 2;

@@ -1,6 +1,6 @@
 //! Linear least squares by QR decomposition, with the residuals of leaving rows out in closed form.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, QR};
 
 /// A diagonal element of R below this share of the largest one means that the columns are dependent.
 const SINGULAR: f64 = 1e-14;
@@ -39,7 +39,8 @@ impl Problem {
     /// augmentation and a method for prediction", Technometrics 16(1), 1974; in blocks by the
     /// Sherman-Morrison-Woodbury formula).
     pub fn solve_and_leave_out(&self) -> Option<Solution> {
-        let (q, unknowns) = self.factorise()?;
+        let (qr, unknowns) = self.factorise()?;
+        let q = qr.q();
         let residuals = self.targets.rows(0, self.data) - self.rows.rows(0, self.data) * &unknowns;
         let mut left_out = residuals.clone();
         for first in (0..self.data).step_by(self.block) {
@@ -60,7 +61,8 @@ impl Problem {
     /// the row and M_i = M - R^-1 q_i r_i / (1 - h_i) are the unknowns of that fit. Blocks of one row only. `None` when
     /// the rows do not determine the unknowns.
     pub fn left_out_at(&self, others: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let (q, unknowns) = self.factorise()?;
+        let (qr, unknowns) = self.factorise()?;
+        let q = qr.q();
         let residuals = self.targets.rows(0, self.data) - self.rows.rows(0, self.data) * &unknowns;
         // R^-1 q_i is what the pseudo-inverse makes of data row i: solve for unit targets.
         let mut units = DMatrix::zeros(self.rows.nrows(), self.data);
@@ -77,8 +79,9 @@ impl Problem {
         Some(estimates)
     }
 
-    /// The orthonormal factor of the rows, whose columns are scaled to length 1 first, and the unknowns.
-    fn factorise(&self) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+    /// The decomposition of the rows, whose columns are scaled to length 1 first, and the unknowns. To make the
+    /// orthonormal factor of it takes as long again, so that is left to those who need it.
+    fn factorise(&self) -> Option<(QR<f64, Dyn, Dyn>, DMatrix<f64>)> {
         let columns = self.rows.ncols();
         if self.rows.nrows() < columns {
             return None;
@@ -104,7 +107,7 @@ impl Problem {
         for (mut row, scale) in unknowns.row_iter_mut().zip(&scale) {
             row /= *scale;
         }
-        Some((qr.q(), unknowns))
+        Some((qr, unknowns))
     }
 }
 
