@@ -108,13 +108,19 @@ fn a_camera_without_a_profile_is_estimated_from_its_matrix() {
 
     // What develop used can be kept, shown, exported and used again: the same picture comes of it.
     let made = desk.run(&["profile", "from-matrix", "a.dng", "-o", "own.toml"]);
-    assert!(made.code == 0 && made.err.contains("expected dE2000") && made.err.contains("by itself"), "{}", made.err);
+    assert!(
+        made.code == 0 && made.err.contains("expected dE2000") && made.err.contains("by itself"),
+        "{}",
+        made.err
+    );
     let (again, err) = developed(&desk, &["--profile", "own.toml"]);
     assert!(err.contains("(its sensitivities)"), "{err}");
     assert!(again == estimated);
     let shown = desk.run(&["profile", "show", "own.toml"]).out;
     assert!(shown.contains("for they are an estimate") && shown.contains("D65: xy"), "{shown}");
-    for (to, light, file) in [("icc", "FL11", "o.icc"), ("cube", "3000K", "o.cube"), ("clf", "LED-B3", "o.clf")] {
+    for (to, light, file) in
+        [("icc", "FL11", "o.icc"), ("cube", "3000K", "o.cube"), ("clf", "LED-B3", "o.clf")]
+    {
         let run = desk.run(&["profile", "export", "own.toml", "--to", to, "--light", light, "-o", file]);
         assert_eq!(run.code, 0, "{to}: {}", run.err);
     }

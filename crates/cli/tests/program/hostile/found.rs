@@ -27,7 +27,7 @@ fn dcp(side: u32) -> Vec<u8> {
     let matrix: Vec<u8> = [2, 0, 0, 0, 2, 0, 0, 0, 2].iter().flat_map(|n| words(&[*n, 2])).collect();
     let matrix = forged.put(&matrix);
     let dimensions = forged.put(&words(&[side, side, 1]));
-    let node = |i: u32| [if i % 2 == 0 { 1e30 } else { -1e30 }, (i % 7) as f32, 1.0];
+    let node = |i: u32| [if i.is_multiple_of(2) { 1e30 } else { -1e30 }, (i % 7) as f32, 1.0];
     let table: Vec<u8> = (0..side * side).flat_map(node).flat_map(f32::to_le_bytes).collect();
     let table = forged.put(&table);
     let numbers = 3 * side * side;
