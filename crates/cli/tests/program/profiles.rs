@@ -128,7 +128,7 @@ fn a_camera_without_a_profile_is_estimated_from_its_matrix() {
     let named = desk.run(&["profile", "from-matrix", "nikon d90", "-o", "d90.toml"]);
     assert!(named.code == 0 && named.err.contains("Nikon D90"), "{}", named.err);
     let unknown = desk.run(&["profile", "from-matrix", "Nikon D9999", "-o", "x.toml"]);
-    assert!(unknown.code == 1 && unknown.err.contains("profile list --all"), "{}", unknown.err);
+    assert!(unknown.code > 0 && unknown.err.contains("profile list --all"), "{}", unknown.err);
     let all = desk.run(&["profile", "list", "--all"]).out;
     assert!(all.lines().count() > 700 && all.contains("Nikon D90"), "{}", all.lines().count());
 }
