@@ -216,13 +216,13 @@ mod tests {
     #[test]
     fn lights_interpolate_in_mired_and_clamp_beyond() {
         let profile = two_lights();
-        let y = |kelvin: f64| profile.model_for(Temperature { kelvin, duv: 0.0 }.xy()).xyz([1.0; 3]).y;
+        let y = |kelvin: f64| between(profile.calibrations(), kelvin).xyz([1.0; 3]).y;
         let lights: Vec<f64> = profile.calibrations().iter().map(|c| c.light.kelvin()).collect();
         let middle = 2e6 / (1e6 / lights[0] + 1e6 / lights[1]);
         assert!((y(20000.0) - 3.0).abs() < 1e-12);
-        assert!((y(lights[0]) - 3.0).abs() < 1e-6);
-        assert!((y(middle * 0.0 + 1e6 / ((1e6 / lights[0] + 1e6 / lights[1]) / 2.0)) - 2.0).abs() < 1e-6);
-        assert!((y(lights[1]) - 1.0).abs() < 1e-6);
+        assert!((y(lights[0]) - 3.0).abs() < 1e-9);
+        assert!((y(middle * 0.0 + 1e6 / ((1e6 / lights[0] + 1e6 / lights[1]) / 2.0)) - 2.0).abs() < 1e-9);
+        assert!((y(lights[1]) - 1.0).abs() < 1e-9);
         assert!((y(2000.0) - 1.0).abs() < 1e-12);
     }
 

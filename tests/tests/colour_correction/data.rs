@@ -43,6 +43,25 @@ pub(super) fn classic_24() -> Vec<Spectrum> {
     reflectances("colorchecker_classic24_babelcolor_380-730_10")
 }
 
+/// Surfaces that a prior may rest on where DC-180, rawtoaces 190, Esser and clothes judge: none of these is among them.
+pub(super) fn surfaces_of_the_prior() -> Vec<Spectrum> {
+    SURFACES.iter().flat_map(|name| reflectances(&format!("refl_iset_{name}"))).collect()
+}
+
+const SURFACES: [&str; 11] = [
+    "dupontpaintchip_vhrel",
+    "food_vhrel",
+    "hair_vhrel",
+    "munsellsamples_vhrel",
+    "nature_vhrel",
+    "objects_vhrel",
+    "gretagdigitalcolorsg",
+    "macbethchart",
+    "africanamerican_vhrel",
+    "caucasian_vhrel",
+    "eastindian_vhrel",
+];
+
 /// The 96 inner patches of the Digital SG.
 pub(super) fn sg_96() -> Vec<Spectrum> {
     listed("colorchecker_sg_all_380-730_1", "sg96_patch_names.txt")

@@ -10,21 +10,6 @@ use darkroot_colour::{Illuminant, Matrix3, Vector3, Xyz, adaptation, white};
 
 use super::data;
 
-/// Surfaces of the prior; those that are judged on are others (docs/colour.md).
-const SURFACES: [&str; 11] = [
-    "dupontpaintchip_vhrel",
-    "food_vhrel",
-    "hair_vhrel",
-    "munsellsamples_vhrel",
-    "nature_vhrel",
-    "objects_vhrel",
-    "gretagdigitalcolorsg",
-    "macbethchart",
-    "africanamerican_vhrel",
-    "caucasian_vhrel",
-    "eastindian_vhrel",
-];
-
 fn files(begin: &str) -> Vec<PathBuf> {
     let all = std::fs::read_dir(data::folder()).unwrap().flatten().map(|entry| entry.path());
     let named = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with(begin);
@@ -44,7 +29,7 @@ fn a_matrix_tells_as_much_as_a_chart() {
         published: published::read(&data::folder().join("published_matrices_A_D65.csv")).unwrap(),
         prior: files("cam_rawtoaces_"),
         cameras: other,
-        surfaces: SURFACES.iter().flat_map(|n| data::reflectances(&format!("refl_iset_{n}"))).collect(),
+        surfaces: data::surfaces_of_the_prior(),
         judged: vec![
             set("DC", data::dc_180()),
             set("rawtoaces", data::reflectances("refl_rawtoaces190")),

@@ -27,21 +27,6 @@ const CAMERAS: [&str; 11] = [
     "sony_ilce-7sm2",
     "arri_d21",
 ];
-/// The reflectances of the virtual set.
-const SURFACES: [&str; 11] = [
-    "dupontpaintchip_vhrel",
-    "food_vhrel",
-    "hair_vhrel",
-    "munsellsamples_vhrel",
-    "nature_vhrel",
-    "objects_vhrel",
-    "gretagdigitalcolorsg",
-    "macbethchart",
-    "africanamerican_vhrel",
-    "caucasian_vhrel",
-    "eastindian_vhrel",
-];
-
 /// The prior for a test camera under a light: all cameras but those of the same model.
 fn prior(test: &str, light: &Spectrum) -> Prior {
     let others = CAMERAS.iter().filter(|name| !test.ends_with(*name));
@@ -50,8 +35,7 @@ fn prior(test: &str, light: &Spectrum) -> Prior {
 }
 
 fn surfaces() -> VirtualSet {
-    let all = SURFACES.iter().flat_map(|name| data::reflectances(&format!("refl_iset_{name}")));
-    VirtualSet::of(&all.collect::<Vec<_>>())
+    VirtualSet::of(&data::surfaces_of_the_prior())
 }
 
 /// Normal noise of standard deviation 1 from a simple generator, the same on every machine.

@@ -36,7 +36,7 @@ impl Estimate {
         let camera = KnownCamera::new(&posterior.sensitivities())?;
         let light = Illuminant::by_name("D65")?.spectrum();
         let white = Vector3::from(light.white());
-        let surfaces: Vec<_> = builtin_surfaces()?.into_iter().map(|(surface, _)| surface).collect();
+        let surfaces: Vec<_> = builtin_surfaces()?.iter().map(|(surface, _)| surface.clone()).collect();
         let model = camera.model_under(&light)?;
         let matrix = published.and_then(|p| {
             let balanced = Matrix3::from_diagonal(&(p.matrix * white));

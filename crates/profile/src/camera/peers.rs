@@ -23,7 +23,7 @@ impl Peers {
     /// [`Peers::new`], or where their text is broken.
     pub fn with_builtin(cameras: &[Sensitivities]) -> Option<Self> {
         let families = offsets::parse(include_str!("../../data/offsets.csv"))?;
-        Self::new(cameras, builtin_surfaces()?, families)
+        Self::new(cameras, builtin_surfaces()?.to_vec(), families)
     }
 
     /// From measured cameras. `None` for fewer than two, or where a channel sees nothing.

@@ -27,9 +27,10 @@ impl Regression {
         let mut square = Matrix3::zeros();
         let mut sums = Operator::zeros();
         for (surface, weight) in surfaces {
-            let xyz = Vector3::from(surface.reflected_xyz(light)) * *weight;
-            square += xyz * Vector3::from(surface.reflected_xyz(light)).transpose();
-            sums += xyz * SVector::<f64, SAMPLES>::from(surface.times(light).0).transpose();
+            let xyz = Vector3::from(surface.reflected_xyz(light));
+            let weighted = xyz * *weight;
+            square += weighted * xyz.transpose();
+            sums += weighted * SVector::<f64, SAMPLES>::from(surface.times(light).0).transpose();
         }
         let operator = square.try_inverse()? * sums;
         let white = Vector3::from(light.white());

@@ -107,7 +107,7 @@ impl Colours {
         let white = Vector3::from(samples.white());
         for ((rgb, xyz), metric) in samples.rgb().iter().zip(samples.xyz()).zip(&metric) {
             let values = features(ORDER, *rgb);
-            add_product(&mut data, &values, &values, metric);
+            add_square(&mut data, &values, metric);
             let rest = Vector3::from(*xyz) - white * rgb[1];
             let weighted = metric * rest;
             for (f, value) in values.iter().enumerate() {
@@ -116,23 +116,25 @@ impl Colours {
             }
             total += metric;
         }
-        let mut penalties = DMatrix::zeros(3 * width, 3 * width);
+        let mut pull = DMatrix::zeros(width, width);
         let points = saturated_points();
         for rgb in &points {
-            let mut pull = features(ORDER, *rgb);
-            pull[..2].fill(0.0);
-            add_product(&mut penalties, &pull, &pull, &(total * (ANCHORS / points.len() as f64)));
+            let mut bent = DVector::from_vec(features(ORDER, *rgb));
+            bent.rows_mut(0, 2).fill(0.0);
+            pull.ger(ANCHORS / points.len() as f64, &bent, &bent, 1.0);
         }
-        let even = total * (3.0 / total.trace());
+        let mut steep = DMatrix::zeros(width, width);
         for (rgb, metric) in samples.rgb().iter().zip(&metric) {
             let size = SLOPE * rgb[0].max(rgb[1]).max(rgb[2]);
-            let weight = size * size * metric.trace() / 3.0;
             let slopes = psi_slopes(ORDER, *rgb);
-            for c in 0..3 {
-                let slope: Vec<f64> = [0.0; 2].into_iter().chain(slopes.iter().map(|s| s[c])).collect();
-                add_product(&mut penalties, &slope, &slope, &(even * weight));
+            let by_channel =
+                |c: usize| DVector::from_fn(width, |f, _| if f < 2 { 0.0 } else { slopes[f - 2][c] });
+            for slope in [by_channel(0), by_channel(1), by_channel(2)] {
+                steep.ger(size * size * metric.trace() / 3.0, &slope, &slope, 1.0);
             }
         }
+        let even = total * (3.0 / total.trace());
+        let penalties = pull.kronecker(&total) + steep.kronecker(&even);
         Some(Self { data, penalties, targets, weight: weights.iter().sum() })
     }
 
@@ -148,10 +150,10 @@ impl Colours {
     }
 }
 
-/// Adds the product of two feature vectors, each entry times a 3 x 3 block.
-fn add_product(sum: &mut DMatrix<f64>, rows: &[f64], columns: &[f64], block: &Matrix3) {
-    for (j, column) in columns.iter().enumerate() {
-        for (i, row) in rows.iter().enumerate() {
+/// Adds the square of a feature vector, each entry times a 3 x 3 block.
+fn add_square(sum: &mut DMatrix<f64>, values: &[f64], block: &Matrix3) {
+    for (j, column) in values.iter().enumerate() {
+        for (i, row) in values.iter().enumerate() {
             let mut place = sum.fixed_view_mut::<3, 3>(3 * i, 3 * j);
             place += block * (row * column);
         }

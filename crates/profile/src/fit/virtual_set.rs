@@ -62,7 +62,7 @@ impl VirtualSet {
     pub fn builtin() -> Option<&'static Self> {
         static SET: OnceLock<Option<VirtualSet>> = OnceLock::new();
         let make = || {
-            let (surfaces, weights): (Vec<Spectrum>, Vec<f64>) = builtin_surfaces()?.into_iter().unzip();
+            let (surfaces, weights): (Vec<Spectrum>, Vec<f64>) = builtin_surfaces()?.iter().cloned().unzip();
             Some(Self::weighted(&surfaces, &weights))
         };
         SET.get_or_init(make).as_ref()
@@ -143,8 +143,9 @@ impl Rendered {
 }
 
 /// The representative reflectances that are built into the program, with their weights. `None` only if their text is broken.
-pub fn builtin_surfaces() -> Option<Vec<(Spectrum, f64)>> {
-    parse_reflectances(include_str!("../../data/reflectances.csv"))
+pub fn builtin_surfaces() -> Option<&'static [(Spectrum, f64)]> {
+    static SURFACES: OnceLock<Option<Vec<(Spectrum, f64)>>> = OnceLock::new();
+    SURFACES.get_or_init(|| parse_reflectances(include_str!("../../data/reflectances.csv"))).as_deref()
 }
 
 /// Gaussian bands and gaps of three widths, rising and falling edges of two, between 0.02 and 0.92.
