@@ -7,7 +7,7 @@ use std::time::Instant;
 use darkroot::{ProfileStore, files};
 
 use super::batch_error::BatchError;
-use super::crew::{Crew, Next, Progress, Work};
+use super::crew::Crew;
 use super::crew_options::CrewOptions;
 use super::facts::FOLDER;
 use super::find::{Source, Sources};
@@ -25,6 +25,7 @@ use super::split::Split;
 use super::stop::Stop;
 use super::task::{Answer, Develop, Task};
 use super::wording::Wording;
+use super::work::{Next, Progress, Work};
 
 /// An output folder with its journal and its workers.
 pub struct Batch {

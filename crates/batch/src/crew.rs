@@ -11,8 +11,9 @@ use super::failure::Failure;
 use super::process::Exit;
 use super::running_worker::RunningWorker;
 use super::stop::Stop;
-use super::task::{Answer, Order, Task};
+use super::task::{Answer, Order};
 use super::wording::Wording;
+use super::work::{Next, Progress, Work};
 
 /// How often time-outs and wishes to stop are looked at.
 const TICK: Duration = Duration::from_millis(50);
@@ -25,45 +26,6 @@ const BREACH: i32 = 31;
 
 /// Memory of the process that the crew works for.
 const PARENT: u64 = 32 << 20;
-
-/// A task in the queue.
-#[derive(Debug, Clone)]
-pub(crate) struct Work {
-    /// The caller's number for it.
-    pub(crate) id: usize,
-    pub(crate) task: Task,
-    /// Bytes of its file.
-    pub(crate) size: u64,
-    /// Not before this time.
-    after: Option<Instant>,
-    /// Whether a worker died over it already.
-    pub(crate) second_try: bool,
-}
-
-impl Work {
-    pub(crate) fn new(id: usize, task: Task, size: u64) -> Self {
-        Self { id, task, size, after: None, second_try: false }
-    }
-}
-
-/// What the crew tells its caller about a task.
-pub(crate) enum Progress {
-    /// It is about to be sent to a worker.
-    Begins,
-    /// It came to its end.
-    Ended(Result<Answer, Failure>),
-}
-
-/// What the caller wants next.
-pub(crate) enum Next {
-    GoOn,
-    /// The same task again after a while.
-    Again(Duration),
-    /// Another task: this one is not to be begun.
-    Leave,
-    /// No more new tasks.
-    Finish,
-}
 
 /// An answer with the place and the number of the worker that it comes from; `None` when no more will come.
 type Message = (usize, u64, Option<Answer>);

@@ -2,11 +2,12 @@
 
 use std::collections::VecDeque;
 
-use super::crew::{Crew, Next, Progress, Work};
+use super::crew::Crew;
 use super::facts::Header;
 use super::find::Source;
 use super::stop::Stop;
 use super::task::{Answer, Task};
+use super::work::{Next, Progress, Work};
 
 /// Camera and date of every file; of those that cannot be read, nothing.
 pub(crate) fn read_headers(crew: &mut Crew, sources: &[Source], stop: &Stop) -> Vec<Header> {

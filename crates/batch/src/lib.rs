@@ -77,6 +77,8 @@ mod process;
 mod running_worker;
 mod thread;
 
+mod work;
+
 mod crew;
 
 mod headers;

@@ -6,7 +6,6 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use darkroot::VERSION;
 
-use super::crew::{Next, Progress, Work};
 use super::facts::modified;
 use super::failure::{Conflict, Failure, FailureKind};
 use super::find::Source;
@@ -18,6 +17,7 @@ use super::outcome::{Event, StopReason, Summary};
 use super::record::{Done, Failed, Record};
 use super::task::{Answer, Developed, Task};
 use super::wording::Wording;
+use super::work::{Next, Progress, Work};
 
 /// How often a file that is still being written is tried again, and after what pause.
 const TRIES: usize = 5;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use darkroot::{path_text, shown, store};
 
 use super::batch_error::BatchError;
-use super::crew::{Crew, Next, Progress, Work};
+use super::crew::Crew;
 use super::facts::{Calibrated, CameraNames, ChartLook, Looked, SessionColour, modified};
 use super::find::{Source, Sources};
 use super::hash;
@@ -17,6 +17,7 @@ use super::journal::JournalError;
 use super::record::Record;
 use super::stop::Stop;
 use super::task::{Answer, Calibrate, Task};
+use super::work::{Next, Progress, Work};
 
 /// Which shot gives the colours.
 #[derive(Debug, Clone, PartialEq, Eq)]
