@@ -20,10 +20,14 @@ pub mod population;
 
 pub mod prior;
 
+pub mod recovered;
+
 pub mod representatives;
 
 pub mod virtual_set;
 
+mod folds;
+mod goal;
 pub mod root_set;
 
 pub mod chromatic;
