@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use darkroot::evaluate::published;
 use darkroot::{ProfileStore, spectra};
 use darkroot_colour::{Illuminant, Spectrum};
-use darkroot_profile::camera::{Difference, Regression, families, offsets};
+use darkroot_profile::camera::{Difference, Regression, computed, families, offsets};
 use darkroot_profile::fit::population::{Population, format_reflectances, parse_reflectances, smoothed};
 use darkroot_profile::fit::representatives::clusters;
 
@@ -44,6 +44,13 @@ const REFLECTANCES: [&str; 12] = [
     "iset_nature_vhrel",
     "iset_objects_vhrel",
 ];
+/// Sets of surfaces that people compute matrices from: a chart, paints and papers, natural and made things.
+const TRAINING: [&[&str]; 4] = [
+    &["iset_macbethchart"],
+    &["iset_munsellsamples_vhrel"],
+    &["iset_nature_vhrel", "iset_food_vhrel"],
+    &["iset_objects_vhrel", "iset_dupontpaintchip_vhrel"],
+];
 /// Principal components kept of each channel; four give the same errors.
 const COMPONENTS: usize = 6;
 /// Clusters of reflectances, and principal components kept of them.
@@ -73,31 +80,36 @@ fn sensitivities(from: &Path) -> Result<String, Box<dyn std::error::Error>> {
 }
 
 fn reflectances(from: &Path) -> Result<Vec<(Spectrum, f64)>, Box<dyn std::error::Error>> {
-    let mut all: Vec<Spectrum> = Vec::new();
-    for name in REFLECTANCES {
-        all.extend(spectra::read(&from.join(format!("refl_{name}.csv")))?.reflectances());
-    }
+    let all = read(from, &REFLECTANCES)?;
     let clusters = clusters(&all, CLUSTERS);
     let means: Vec<Spectrum> = clusters.iter().map(|c| c.mean.clone()).collect();
     let weights = clusters.iter().map(|c| (c.members.len() as f64).sqrt());
     Ok(smoothed(&means, &all, SHAPES).into_iter().zip(weights).collect())
 }
 
+fn read(from: &Path, names: &[&str]) -> Result<Vec<Spectrum>, Box<dyn std::error::Error>> {
+    let mut all = Vec::new();
+    for name in names {
+        all.extend(spectra::read(&from.join(format!("refl_{name}.csv")))?.reflectances());
+    }
+    Ok(all)
+}
+
 /// How the published D65 matrices of the cameras whose sensitivities are built in differ from those that their
-/// sensitivities give through the representative reflectances.
+/// sensitivities give through the representative reflectances, and how computed ones do.
 fn offsets(from: &Path, surfaces: &[(Spectrum, f64)]) -> Result<String, Box<dyn std::error::Error>> {
     let published = published::read(&from.join("published_matrices_A_D65.csv"))?;
     let light = Illuminant::by_name("D65").ok_or("no D65")?.spectrum();
     let regression = Regression::under(&light, surfaces).ok_or("the reflectances determine no matrix")?;
-    let mut known = Vec::new();
+    let sets = TRAINING.iter().map(|names| read(from, names)).collect::<Result<Vec<_>, _>>()?;
+    let (mut known, mut own) = (Vec::new(), Vec::new());
     for found in ProfileStore::builtin().all() {
-        let (Some(camera), Some(matrix)) =
-            (found.profile.known_camera(), published::of(&published, found.profile.camera()))
-        else {
-            eprintln!("{}: no published matrix", found.profile.camera().name());
-            continue;
-        };
-        known.extend(Difference::of(&regression, camera.sensitivities(), &matrix));
+        let camera = found.profile.known_camera().ok_or("a built-in profile without sensitivities")?;
+        own.extend(computed(&regression, &light, camera.sensitivities(), &sets));
+        match published::of(&published, found.profile.camera()) {
+            Some(matrix) => known.extend(Difference::of(&regression, camera.sensitivities(), &matrix)),
+            None => eprintln!("{}: no published matrix", found.profile.camera().name()),
+        }
     }
-    Ok(offsets::format(&families(&known)))
+    Ok(offsets::format(&families(&known, &own)))
 }

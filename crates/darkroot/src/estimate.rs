@@ -66,7 +66,7 @@ pub fn estimate_named(text: &str, limits: &Limits) -> Result<Estimated, Error> {
     let listed = darkroot_raw::cameras().into_iter().find(|c| plain(&c.name()) == plain(text));
     let listed = listed.ok_or_else(|| Error::NotListed { text: text.to_owned() })?;
     let camera = Camera { common_make: listed.make, common_model: listed.model, ..Camera::default() };
-    let published = Observation { light: light(LISTED), matrix: listed.color_matrix };
+    let published = Observation { light: light(LISTED), matrix: listed.color_matrix, listed: true };
     of_matrix(&camera, Some(&published)).ok_or(Error::Prior)
 }
 
@@ -95,13 +95,15 @@ fn profile(camera: &Camera, estimate: &Estimate) -> Profile {
 }
 
 /// The matrix nearest to daylight, for this specimen of the camera.
-fn published(capture: &Capture) -> Option<Observation> {
+pub(crate) fn published(capture: &Capture) -> Option<Observation> {
     let kelvin = |c: &darkroot_photo::Calibration| c.kelvin.unwrap_or(LISTED);
     let far = |c: &darkroot_photo::Calibration| (1e6 / kelvin(c) - 1e6 / LISTED).abs();
     let nearest = capture.calibrations.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
     let own = nearest.camera_calibration.unwrap_or_else(Matrix3::identity);
     let balance = Matrix3::from_diagonal(&Vector3::from(capture.analog_balance));
-    Some(Observation { light: light(kelvin(nearest)), matrix: balance * own * nearest.color_matrix })
+    // Only a DNG has matrices of its own.
+    let listed = capture.source.format != "DNG" || darkroot_raw::is_listed(&nearest.color_matrix);
+    Some(Observation { light: light(kelvin(nearest)), matrix: balance * own * nearest.color_matrix, listed })
 }
 
 /// The light that a matrix for this temperature is for.
@@ -118,7 +120,7 @@ fn light(kelvin: f64) -> Spectrum {
 }
 
 /// The cameras whose measured sensitivities are built into the program.
-fn peers() -> Option<&'static Peers> {
+pub(crate) fn peers() -> Option<&'static Peers> {
     static PEERS: OnceLock<Option<Peers>> = OnceLock::new();
     let make = || {
         let store = ProfileStore::builtin();

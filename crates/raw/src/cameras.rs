@@ -21,6 +21,13 @@ impl Listed {
     }
 }
 
+/// Whether a matrix is one of the published ones, to the digits that these have.
+pub fn is_listed(color_matrix: &Matrix3) -> bool {
+    let values: [i32; 9] = std::array::from_fn(|i| (color_matrix[(i / 3, i % 3)] * 10_000.0).round() as i32);
+    let own = CAMERAS.iter().map(|c| c.color_matrix);
+    own.chain(MATRICES.iter().map(|m| m.color_matrix)).any(|listed| *listed == values)
+}
+
 /// Every camera with a usable matrix, by name, each once.
 pub fn cameras() -> Vec<Listed> {
     let listed = |make: &str, model: &str, matrix: &[i32]| {
@@ -49,6 +56,8 @@ mod tests {
         assert!(all.len() > 600, "{}", all.len());
         let d850 = all.iter().find(|c| c.name() == "Nikon D850").unwrap();
         assert!((d850.color_matrix[(0, 0)] - 1.0405).abs() < 1e-9, "{}", d850.color_matrix);
+        assert!(is_listed(&d850.color_matrix));
+        assert!(!is_listed(&(d850.color_matrix * 1.001)));
         assert!(all.windows(2).all(|pair| pair[0].name().to_lowercase() < pair[1].name().to_lowercase()));
     }
 }

@@ -11,7 +11,7 @@
 use darkroot_photo::Capture;
 
 pub mod cameras;
-pub use cameras::{Listed, cameras};
+pub use cameras::{Listed, cameras, is_listed};
 
 pub mod error;
 pub use error::{Damage, Error, TooLarge, Unknown};

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::{Matrix3, Spectrum, Vector3, Xyz};
 use darkroot_profile::camera::{
-    Difference, KnownCamera, Observation, Peers, Posterior, Regression, families, light,
+    Difference, KnownCamera, Observation, Peers, Posterior, Regression, computed, families, light,
 };
 use darkroot_profile::fit::virtual_set::VirtualSet;
 use darkroot_profile::fit::{Samples, fit, root_set};
@@ -20,6 +20,9 @@ use super::published::{Published, key, named};
 use crate::fault::SpectraError;
 use crate::light::LightSource;
 use crate::{Error, ProfileStore, spectra};
+
+/// Into how many parts the surfaces of the prior are cut, of each of which matrices are computed.
+const TRAINING_SETS: usize = 4;
 
 /// What is judged, and by what.
 #[derive(Debug, Clone)]
@@ -125,13 +128,17 @@ pub fn evaluate(request: &Request) -> Result<Outcome, Error> {
     let undetermined = || Error::Prior;
     let regression = Regression::under(&d65, &weighted).ok_or_else(undetermined)?;
     let set = VirtualSet::of(&surfaces);
+    let parts: Vec<Vec<Spectrum>> =
+        surfaces.chunks(surfaces.len().div_ceil(TRAINING_SETS).max(1)).map(<[Spectrum]>::to_vec).collect();
     let one = |camera: &Known| {
         let others: Vec<&Known> = prior.iter().filter(|p| !twins(p, camera)).collect();
         let known: Vec<Sensitivities> = others.iter().map(|p| p.sensitivities.clone()).collect();
         let differences: Vec<Difference> =
             others.iter().filter_map(|p| Difference::of(&regression, &p.sensitivities, &p.matrix)).collect();
-        let peers = Peers::new(&known, weighted.clone(), families(&differences)).ok_or_else(undetermined)?;
-        let published = Observation { light: d65.clone(), matrix: camera.matrix };
+        let of_parts = known.iter().flat_map(|camera| computed(&regression, &d65, camera, &parts));
+        let families = families(&differences, &of_parts.collect::<Vec<_>>());
+        let peers = Peers::new(&known, weighted.clone(), families).ok_or_else(undetermined)?;
+        let published = Observation { light: d65.clone(), matrix: camera.matrix, listed: true };
         let estimate = Posterior::of(&peers, &published).ok_or_else(undetermined)?.sensitivities();
         let estimate = KnownCamera::new(&estimate).ok_or_else(undetermined)?;
         let judge = |light: &LightSource| judge(camera, &estimate, &set, light, request);

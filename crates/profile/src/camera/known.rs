@@ -8,7 +8,6 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::measured::Measured;
-use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Illuminant, Spectrum, Xy, white};
 
 use super::light;
@@ -19,10 +18,9 @@ use crate::{Calibration, Errors, Figures, Kind, Light, Model};
 
 /// How many models are remembered: a series of photographs has few whites.
 const REMEMBERED: usize = 8;
-/// Distance of a white from the Planckian locus up to which lights have it, and from which on none does: between the two
-/// the model moves to that of the nearest black body or daylight.
-const ORDINARY_DUV: f64 = 0.012;
-const STRANGE_DUV: f64 = 0.020;
+/// Most steps, and the step in chromaticity that slopes are taken over, where a white is looked for.
+const STEPS: usize = 20;
+const SLOPE: f64 = 1e-4;
 /// Lights that stand for all others where a list of calibrations is wanted.
 const STANDARD: [&str; 3] = ["D65", "D50", "A"];
 
@@ -53,6 +51,8 @@ pub struct KnownCamera {
     expected: Option<f64>,
     standard: OnceLock<Vec<Calibration>>,
     last: Mutex<VecDeque<(Xy, Model)>>,
+    /// The neutral whose white was last asked for, and that white: most settings leave both as they are.
+    last_white: Mutex<Option<([f64; 3], Xy)>>,
 }
 
 impl KnownCamera {
@@ -82,6 +82,7 @@ impl KnownCamera {
             expected: None,
             standard: OnceLock::new(),
             last: Mutex::default(),
+            last_white: Mutex::default(),
         })
     }
 
@@ -127,20 +128,67 @@ impl KnownCamera {
     }
 
     /// The model for a light of which the white is known: that of the light which stands in for all with this white
-    /// ([`light::with_white`]). Whites that no light has get the model of the nearest black body or daylight. The last ones
-    /// are remembered.
+    /// ([`light::likely`]). The last ones are remembered.
     pub fn model_for(&self, white: Xy) -> Model {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, model)) = last.iter().find(|(known, _)| *known == white) {
             return model.clone();
         }
-        let model = self.model_under(&likely_light(white));
+        let model = self.model_under(&light::likely(white));
         let model = model.unwrap_or_else(|| self.calibrations()[0].model.clone());
         if last.len() == REMEMBERED {
             last.pop_front();
         }
         last.push_back((white, model.clone()));
         model
+    }
+
+    /// Camera RGB of a white, the largest 1: what the camera sees of the light that stands in for all with this white
+    /// ([`light::with_white`]). `None` for a white that no smooth light has.
+    pub fn neutral_of(&self, white: Xy) -> Option<[f64; 3]> {
+        let light = light::with_white(white, |_| false)?;
+        let seen = self.sensitivities.0.each_ref().map(|s| s.dot(&light));
+        let largest = seen.iter().copied().fold(0.0, f64::max);
+        seen.iter().all(|v| v.is_finite() && *v > 0.0).then(|| seen.map(|v| v / largest))
+    }
+
+    /// The white whose [`neutral_of`](Self::neutral_of) is this camera RGB, of any scale, by Newton's method from a white
+    /// near to it. `None` where there is none. The last one is remembered.
+    pub fn white_of(&self, neutral: [f64; 3], near: Xy) -> Option<Xy> {
+        let mut last = self.last_white.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((known, white)) = *last
+            && known.map(f64::to_bits) == neutral.map(f64::to_bits)
+        {
+            return Some(white);
+        }
+        let found = self.search_white(neutral, near)?;
+        *last = Some((neutral, found));
+        Some(found)
+    }
+
+    fn search_white(&self, neutral: [f64; 3], near: Xy) -> Option<Xy> {
+        let ratios = |[r, g, b]: [f64; 3]| nalgebra::Vector2::new((r / g).ln(), (b / g).ln());
+        let wanted = ratios(neutral);
+        let off = |xy: Xy| self.neutral_of(xy).map(|n| ratios(n) - wanted);
+        let mut xy = near;
+        let mut here = off(xy)?;
+        for _ in 0..STEPS {
+            if here.norm() < 1e-9 {
+                break;
+            }
+            let along = (off(Xy::new(xy.x + SLOPE, xy.y))? - here) / SLOPE;
+            let across = (off(Xy::new(xy.x, xy.y + SLOPE))? - here) / SLOPE;
+            let step = nalgebra::Matrix2::from_columns(&[along, across]).try_inverse()? * here;
+            // Whites lie close together: a step that leaves them, or does not help, is shortened.
+            let next = (0..8).map(|n| 0.5f64.powi(n)).find_map(|share| {
+                let there = Xy::new(xy.x - share * step.x, xy.y - share * step.y);
+                let off = off(there).filter(|o| o.norm() < here.norm())?;
+                Some((there, off))
+            });
+            let Some((there, off)) = next else { break };
+            (xy, here) = (there, off);
+        }
+        (here.norm() < 1e-6).then_some(xy)
     }
 
     /// Calibrations for D65, D50 and A, which stand for those of all other lights.
@@ -159,20 +207,6 @@ impl KnownCamera {
     }
 }
 
-/// The light that stands in for all with this white. Balanced samples and artistic choices give whites that no light has.
-fn likely_light(white: Xy) -> Spectrum {
-    let at = Temperature::of(white);
-    let plausible = ((STRANGE_DUV - at.duv.abs()) / (STRANGE_DUV - ORDINARY_DUV)).clamp(0.0, 1.0);
-    let natural = light::natural(at.kelvin);
-    let near = if plausible < 1.0 {
-        let own = Temperature::of(natural.white().xy().unwrap_or(white));
-        Temperature { kelvin: at.kelvin, duv: own.duv + (at.duv - own.duv) * plausible }.xy()
-    } else {
-        white
-    };
-    light::with_white(near, |_| false).unwrap_or(natural)
-}
-
 impl Clone for KnownCamera {
     fn clone(&self) -> Self {
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -183,6 +217,7 @@ impl Clone for KnownCamera {
             expected: self.expected,
             standard: self.standard.clone(),
             last: Mutex::new(last),
+            last_white: Mutex::default(),
         }
     }
 }

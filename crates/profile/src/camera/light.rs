@@ -2,8 +2,9 @@
 //!
 //! A photograph tells the chromaticity of its light at best, and many lights share it. What stands in for the light is
 //! the weighted mean of those that are near: daylight or a black body of that temperature, and the fluorescent lamps and
-//! LEDs of the CIE, which count the less, the farther they are in temperature and tint. A smooth filter then takes the
-//! mean to exactly that white. All of it varies continuously with the white.
+//! LEDs of the CIE, which count the less, the farther they are in temperature and tint. A white on the daylight locus is
+//! mostly daylight's. A smooth filter then takes the mean to exactly that white. All of it varies continuously with the
+//! white.
 
 use std::sync::OnceLock;
 
@@ -15,9 +16,17 @@ use darkroot_colour::{Illuminant, Spectrum, Xy};
 const NEAR_MIRED: f64 = 25.0;
 const NEAR_DUV: f64 = 0.006;
 
-/// Weights beside that of daylight or a black body, 1: of a fluorescent lamp and of an LED right at the white.
+/// Weights beside that of a black body, 1: of a fluorescent lamp and of an LED right at the white, and of daylight at a
+/// white of its own.
 const FLUORESCENT: f64 = 0.5;
 const LED: f64 = 1.0;
+const DAYLIGHT: f64 = 3.0;
+/// How near to the daylight locus a white has to be to be its own: a standard deviation in Duv.
+const NEAR_DAY_DUV: f64 = 0.003;
+
+/// Distance of a white from the Planckian locus up to which lights have it, and from which on none does.
+const ORDINARY_DUV: f64 = 0.012;
+const STRANGE_DUV: f64 = 0.020;
 
 /// Between these temperatures (K) a black body becomes daylight.
 const LAMP: f64 = 3500.0;
@@ -27,7 +36,9 @@ const DAY: f64 = 4500.0;
 /// `None` for a white that no smooth light has.
 pub fn with_white(white: Xy, left_out: impl Fn(&Illuminant) -> bool) -> Option<Spectrum> {
     let at = Temperature::of(white);
-    let mut sum = natural(at.kelvin);
+    let natural = natural(at.kelvin);
+    let off = (at.duv - Temperature::of(natural.white().xy()?).duv) / NEAR_DAY_DUV;
+    let mut sum = natural.scaled(1.0 + (DAYLIGHT - 1.0) * day(at.kelvin) * (-0.5 * off * off).exp());
     for Lamp { share, at: own, light, .. } in lamps().iter().filter(|lamp| !left_out(lamp.illuminant)) {
         let mired = (1e6 / own.kelvin - 1e6 / at.kelvin) / NEAR_MIRED;
         let duv = (own.duv - at.duv) / NEAR_DUV;
@@ -35,6 +46,21 @@ pub fn with_white(white: Xy, left_out: impl Fn(&Illuminant) -> bool) -> Option<S
         sum = added(&sum, light, weight);
     }
     filtered(&sum, white)
+}
+
+/// The light that stands in for all with this white, as [`with_white`]; but whites that no light has, as balanced samples
+/// and artistic choices give them, have that of the nearest black body or daylight, with a smooth transition.
+pub fn likely(white: Xy) -> Spectrum {
+    let at = Temperature::of(white);
+    let plausible = ((STRANGE_DUV - at.duv.abs()) / (STRANGE_DUV - ORDINARY_DUV)).clamp(0.0, 1.0);
+    let natural = natural(at.kelvin);
+    let near = if plausible < 1.0 {
+        let own = Temperature::of(natural.white().xy().unwrap_or(white));
+        Temperature { kelvin: at.kelvin, duv: own.duv + (at.duv - own.duv) * plausible }.xy()
+    } else {
+        white
+    };
+    with_white(near, |_| false).unwrap_or(natural)
 }
 
 /// A lamp that may be the light.
@@ -69,10 +95,15 @@ fn share(lamp: &Illuminant) -> Option<f64> {
 
 /// Daylight, or a black body for warm whites, luminance 1.
 pub fn natural(kelvin: f64) -> Spectrum {
-    let mired = |k: f64| 1e6 / k;
-    let day = ((mired(LAMP) - mired(kelvin)) / (mired(LAMP) - mired(DAY))).clamp(0.0, 1.0);
+    let day = day(kelvin);
     let lamp = even(&Spectrum::black_body(kelvin)).scaled(1.0 - day);
     added(&lamp, &even(&Spectrum::daylight(kelvin)), day)
+}
+
+/// From 0 for a black body to 1 for daylight.
+fn day(kelvin: f64) -> f64 {
+    let mired = |k: f64| 1e6 / k;
+    ((mired(LAMP) - mired(kelvin)) / (mired(LAMP) - mired(DAY))).clamp(0.0, 1.0)
 }
 
 /// The light with the luminance 1.

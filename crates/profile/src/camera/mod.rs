@@ -7,11 +7,13 @@ pub mod light;
 pub mod offsets;
 pub mod peers;
 pub mod posterior;
+pub mod refined;
 pub mod regression;
 
 pub use estimate::Estimate;
 pub use known::{Judged, KnownCamera};
-pub use offsets::{Difference, Family, Observation, families};
+pub use offsets::{Difference, Family, Observation, Shares, computed, families};
 pub use peers::Peers;
 pub use posterior::Posterior;
+pub use refined::ChartSeen;
 pub use regression::Regression;

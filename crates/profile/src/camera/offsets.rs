@@ -1,13 +1,15 @@
 //! How published colour matrices differ from those that sensitivities give.
 //!
 //! The difference is systematic, and makers of matrices differ: older and newer matrices of Adobe are two families. What
-//! is kept of a family are the mean and the covariance of the difference, for each channel. A third family stands for
-//! matrices of which nothing is known, as phones write them into their files: it is as wide as all together, and wider.
+//! is kept of a family are the mean and the covariance of the difference, for each channel. A third family are matrices that
+//! someone computed from sensitivities or a chart, as phones and laboratories write them into their files: they differ only
+//! by the surfaces and the way of the fit. A fourth stands for matrices of which nothing is known: it is as wide as all
+//! published ones together, and wider.
 
 use darkroot_colour::{Matrix3, Spectrum, Vector3};
 use nalgebra::DVector;
 
-use super::regression::Regression;
+use super::regression::{Regression, inverse_fit};
 use crate::spectra::Sensitivities;
 
 /// Variance that is added to every covariance: the families are small, and no matrix is exact to a hundredth.
@@ -15,7 +17,10 @@ const FLOOR: f64 = 1e-4;
 /// How much wider than all known matrices together those are of which nothing is known: a factor on the variance.
 const WIDE: f64 = 9.0;
 /// How probable such a matrix is before it is looked at.
-const RARE: f64 = 0.001;
+const RARE: Shares = Shares { listed: 0.001, found: 0.001 };
+/// How probable a published matrix is, and one that was computed.
+const USUAL: Shares = Shares { listed: 1.0, found: 1.0 };
+const COMPUTED: Shares = Shares { listed: 0.1, found: 10.0 };
 /// Names of the channels.
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 /// Fewest cameras that make a family.
@@ -31,7 +36,16 @@ pub struct Family {
     /// Covariance of that difference.
     pub covariance: [Matrix3; 3],
     /// How probable the family is before a matrix is looked at, relative to the others.
-    pub share: f64,
+    pub shares: Shares,
+}
+
+/// How probable something is for a matrix that lists of published ones have, and for one that only a file has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// For a listed one.
+    pub listed: f64,
+    /// For one that was found in a file.
+    pub found: f64,
 }
 
 /// A published matrix.
@@ -41,6 +55,8 @@ pub struct Observation {
     pub light: Spectrum,
     /// XYZ to camera RGB, of any scale.
     pub matrix: Matrix3,
+    /// Whether lists of published matrices have it; others are known from their file only.
+    pub listed: bool,
 }
 
 /// A camera of which both are known: for each channel the published row less the computed one.
@@ -66,25 +82,44 @@ impl Difference {
     }
 }
 
-/// The families of known differences. Empty where there are too few of them.
-pub fn families(known: &[Difference]) -> Vec<Family> {
+/// Differences of the matrices that each set of surfaces gives for a camera, fitted in either direction: camera RGB from
+/// XYZ, and XYZ from camera RGB. Sets that determine no matrix give none.
+pub fn computed(
+    regression: &Regression,
+    light: &Spectrum,
+    camera: &Sensitivities,
+    sets: &[Vec<Spectrum>],
+) -> Vec<Difference> {
+    let forward = |set: &[Spectrum]| {
+        let even: Vec<(Spectrum, f64)> = set.iter().map(|s| (s.clone(), 1.0)).collect();
+        Regression::under(light, &even).map(|r| r.matrix(camera))
+    };
+    let both = |set: &Vec<Spectrum>| [forward(set), inverse_fit(light, camera, set)];
+    let matrices = sets.iter().flat_map(both).flatten();
+    matrices.filter_map(|matrix| Difference::of(regression, camera, &matrix)).collect()
+}
+
+/// The families of known differences: of published matrices, and of [`computed`] ones. Families of too few are left out.
+pub fn families(known: &[Difference], computed: &[Difference]) -> Vec<Family> {
     let of = |older: bool| known.iter().filter(move |d| d.older == older).map(|d| d.rows).collect::<Vec<_>>();
-    let all: Vec<[Vector3; 3]> = known.iter().map(|d| d.rows).collect();
+    let rows = |of: &[Difference]| of.iter().map(|d| d.rows).collect::<Vec<_>>();
     let found = [
-        Family::of("older published matrices", &of(true), 1.0, 1.0),
-        Family::of("newer published matrices", &of(false), 1.0, 1.0),
-        Family::of("matrices of unknown origin", &all, WIDE, RARE),
+        Family::of("older published matrices", &of(true), 1.0, USUAL),
+        Family::of("newer published matrices", &of(false), 1.0, USUAL),
+        Family::of("computed matrices", &rows(computed), 1.0, COMPUTED),
+        Family::of("matrices of unknown origin", &rows(known), WIDE, RARE),
     ];
     found.into_iter().flatten().collect()
 }
 
-/// As text: a line for each channel of each family, with its share, mean and the lower triangle of its covariance.
+/// As text: a line for each channel of each family, with its shares, mean and the lower triangle of its covariance.
 pub fn format(families: &[Family]) -> String {
     let mut text = String::new();
     for family in families {
         for ((name, mean), covariance) in CHANNELS.iter().zip(&family.mean).zip(&family.covariance) {
             let lower = (0..3).flat_map(|i| (0..=i).map(move |j| covariance[(i, j)]));
-            let numbers = std::iter::once(family.share).chain(mean.iter().copied()).chain(lower);
+            let shares = [family.shares.listed, family.shares.found];
+            let numbers = shares.into_iter().chain(mean.iter().copied()).chain(lower);
             let numbers: Vec<String> = numbers.map(|v| format!("{v:.6e}")).collect();
             text += &format!("{},{name},{}\n", family.name, numbers.join(","));
         }
@@ -99,16 +134,16 @@ pub fn parse(text: &str) -> Option<Vec<Family>> {
         let mut cells = line.split(',');
         let name = cells.next()?.to_owned();
         (cells.next()? == channel).then_some(())?;
-        let v: [f64; 10] = cells.map(|c| c.parse().ok()).collect::<Option<Vec<_>>>()?.try_into().ok()?;
-        let covariance = Matrix3::new(v[4], v[5], v[7], v[5], v[6], v[8], v[7], v[8], v[9]);
-        Some((name, v[0], Vector3::new(v[1], v[2], v[3]), covariance))
+        let v: [f64; 11] = cells.map(|c| c.parse().ok()).collect::<Option<Vec<_>>>()?.try_into().ok()?;
+        let covariance = Matrix3::new(v[5], v[6], v[8], v[6], v[7], v[9], v[8], v[9], v[10]);
+        Some((name, Shares { listed: v[0], found: v[1] }, Vector3::new(v[2], v[3], v[4]), covariance))
     };
     let family = |lines: &[&str]| {
         let [red, green, blue] = lines else { return None };
         let rows = [row(red, CHANNELS[0])?, row(green, CHANNELS[1])?, row(blue, CHANNELS[2])?];
         Some(Family {
             name: rows[0].0.clone(),
-            share: rows[0].1,
+            shares: rows[0].1,
             mean: rows.each_ref().map(|r| r.2),
             covariance: rows.each_ref().map(|r| r.3),
         })
@@ -117,7 +152,7 @@ pub fn parse(text: &str) -> Option<Vec<Family>> {
 }
 
 impl Family {
-    fn of(name: &str, differences: &[[Vector3; 3]], wider: f64, share: f64) -> Option<Self> {
+    fn of(name: &str, differences: &[[Vector3; 3]], wider: f64, shares: Shares) -> Option<Self> {
         if differences.len() < FEWEST {
             return None;
         }
@@ -128,7 +163,7 @@ impl Family {
             let own = off.map(|o| o * o.transpose()).sum::<Matrix3>() / (count - 1.0);
             own * wider + Matrix3::identity() * FLOOR
         });
-        Some(Self { name: name.to_owned(), mean, covariance, share })
+        Some(Self { name: name.to_owned(), mean, covariance, shares })
     }
 }
 
@@ -141,16 +176,17 @@ mod tests {
         let row =
             |i: i32, k: i32| Vector3::new(f64::from(i * i % 7), f64::from(i * k), f64::from(i + k)) * 0.01;
         let difference = |i: i32| Difference { rows: [row(i, 1), row(i, 2), row(i, 3)], older: i % 2 == 0 };
-        let made = families(&(0..12).map(difference).collect::<Vec<_>>());
-        assert_eq!(made.len(), 3);
+        let known: Vec<Difference> = (0..12).map(difference).collect();
+        let made = families(&known, &known[..5]);
+        assert_eq!(made.len(), 4);
         for (a, b) in parse(&format(&made)).unwrap().iter().zip(&made) {
-            assert_eq!(a.name, b.name);
+            assert_eq!((&a.name, a.shares), (&b.name, b.shares));
             for k in 0..3 {
                 assert!((a.mean[k] - b.mean[k]).amax() < 1e-7);
                 assert!((a.covariance[k] - b.covariance[k]).amax() < 1e-7);
             }
         }
         assert_eq!(parse("older,red,1,2,3"), None);
-        assert!(families(&[]).is_empty());
+        assert!(families(&[], &[]).is_empty());
     }
 }

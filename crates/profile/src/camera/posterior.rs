@@ -31,17 +31,17 @@ const NEGLIGIBLE: f64 = 1e-3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posterior {
     /// How sensitive each channel is beside the others: its sum over wavelength.
-    scale: [f64; 3],
-    channels: [Channel; 3],
+    pub(super) scale: [f64; 3],
+    pub(super) channels: [Channel; 3],
     /// The family that explains the matrix best; `None` without a matrix.
-    family: Option<String>,
+    pub(super) family: Option<String>,
 }
 
 /// One channel's sensitivity, scaled to the sum 1.
 #[derive(Debug, Clone, PartialEq)]
-struct Channel {
-    mean: DVector<f64>,
-    covariance: DMatrix<f64>,
+pub(super) struct Channel {
+    pub(super) mean: DVector<f64>,
+    pub(super) covariance: DMatrix<f64>,
 }
 
 /// A published matrix as the estimate uses it.
@@ -49,6 +49,7 @@ struct Seen {
     regression: Regression,
     /// Rows, scaled to 1 at white.
     rows: [Vector3; 3],
+    listed: bool,
 }
 
 /// How a family explains a matrix through each of the cameras.
@@ -66,7 +67,7 @@ impl Posterior {
     pub fn of(peers: &Peers, published: &Observation) -> Option<Self> {
         let regression = Regression::under(&published.light, &peers.surfaces)?;
         let rows = regression.scaled(&published.matrix)?;
-        let seen = Seen { regression, rows };
+        let seen = Seen { regression, rows, listed: published.listed };
         let explained: Vec<Explained<'_>> =
             peers.families.iter().map(|f| seen.explained(peers, f)).collect::<Option<_>>()?;
         let most = explained.iter().map(|e| e.likelihood).fold(f64::NEG_INFINITY, f64::max);
@@ -157,10 +158,11 @@ impl Seen {
         let likely: Vec<f64> = logarithms.iter().map(|l| (l - most).exp()).collect();
         let total: f64 = likely.iter().sum();
         let even = 1.0 / likely.len() as f64;
+        let share = if self.listed { family.shares.listed } else { family.shares.found };
         Some(Explained {
             family,
             cameras: likely.iter().map(|l| (1.0 - ALIKE) * l / total + ALIKE * even).collect(),
-            likelihood: most + (total * even * family.share).ln() - spread / (2.0 * TEMPERATURE),
+            likelihood: most + (total * even * share).ln() - spread / (2.0 * TEMPERATURE),
         })
     }
 

@@ -9,6 +9,8 @@ use darkroot_colour::spectrum::SAMPLES;
 use darkroot_colour::{Matrix3, Spectrum, Vector3};
 use nalgebra::{DVector, OMatrix, SVector, U3};
 
+use crate::spectra::Sensitivities;
+
 /// Three numbers for every sample of a spectrum.
 pub(super) type Operator = OMatrix<f64, U3, nalgebra::Const<SAMPLES>>;
 
@@ -43,6 +45,12 @@ impl Regression {
         row.column(0) / self.white.dot(&row.column(0))
     }
 
+    /// The whole matrix of a camera: XYZ to camera RGB, each row scaled to 1 at white.
+    pub fn matrix(&self, camera: &Sensitivities) -> Matrix3 {
+        let row = |k: usize| self.row(&DVector::from_column_slice(&camera.0[k].0)).transpose();
+        Matrix3::from_rows(&[row(0), row(1), row(2)])
+    }
+
     /// The rows of a published matrix, each scaled to 1 at white. `None` where a channel is dark at white.
     pub fn scaled(&self, matrix: &Matrix3) -> Option<[Vector3; 3]> {
         let row = |k: usize| {
@@ -52,4 +60,21 @@ impl Regression {
         };
         Some([row(0)?, row(1)?, row(2)?])
     }
+}
+
+/// The colour matrix of a camera that is fitted the other way round: the inverse of the least-squares fit of XYZ to camera
+/// RGB over surfaces under a light. `None` where they do not determine it.
+pub(super) fn inverse_fit(
+    light: &Spectrum,
+    camera: &Sensitivities,
+    surfaces: &[Spectrum],
+) -> Option<Matrix3> {
+    let samples = camera.under(light)?.render(surfaces, light).ok()?;
+    let (mut products, mut squares) = (Matrix3::zeros(), Matrix3::zeros());
+    for (rgb, xyz) in samples.rgb().iter().zip(samples.xyz()) {
+        let rgb = Vector3::from(*rgb);
+        products += Vector3::from(*xyz) * rgb.transpose();
+        squares += rgb * rgb.transpose();
+    }
+    (products * squares.try_inverse()?).try_inverse()
 }
