@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use darkroot_colour::Xy;
-use darkroot_develop::CameraMatrix;
+use darkroot_develop::{CameraMatrix, Whites};
 use darkroot_profile::Profile;
 
 use crate::fault::NeutralError;
@@ -25,7 +25,8 @@ pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec
         return Err(unusable(NeutralError::OtherCamera { camera, of }));
     }
     let matrix = CameraMatrix::of(&capture);
-    let neutral = |white: &Xy| matrix.as_ref().and_then(|m| m.neutral_of(*white));
+    let known = Whites::of(matrix.as_ref(), Some(profile));
+    let neutral = |white: &Xy| matrix.as_ref().and_then(|_| known.neutral_of(*white));
     let all: Option<Vec<[f64; 3]>> = whites.iter().map(neutral).collect();
     all.ok_or_else(|| unusable(NeutralError::NoMatrix))
 }

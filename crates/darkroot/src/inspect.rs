@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use darkroot_colour::temperature::Temperature;
-use darkroot_develop::Histogram;
+use darkroot_develop::{Histogram, Whites};
 use darkroot_photo::metadata::{Directory, Metadata, tag};
 use darkroot_photo::{AsShot, Calibration, Capture, Layout};
 use serde::Serialize;
@@ -122,13 +122,14 @@ pub fn inspect(
     let (capture, analysis) = (photo.capture(), photo.analyse_as_asked());
     let saturation = analysis.survey().saturation;
     let Histogram { bins, clipped } = darkroot_develop::histogram(capture, analysis.light(), saturation);
-    let matrix = analysis.matrix();
+    let chosen = photo.profile(store, settings).map_err(|e| *e)?;
+    let whites = Whites::of(analysis.matrix(), chosen.as_ref().map(|c| c.profile.as_ref()));
     let neutral = match capture.as_shot {
         Some(AsShot::Neutral(n)) => Some(n),
-        Some(AsShot::White(xy)) => matrix.and_then(|m| m.neutral_of(xy)),
+        Some(AsShot::White(xy)) => whites.neutral_of(xy),
         None => None,
     };
-    let white = neutral.zip(matrix).map(|(n, matrix)| Temperature::of(matrix.white_of(n)));
+    let white = whites.as_shot(capture).map(Temperature::of);
     let rect = |r: darkroot_photo::Rect| [r.x, r.y, r.width, r.height];
     let size = capture.counts.size();
     let (hash, mean) = if samples_hash { hash_and_mean(capture) } else { (None, None) };

@@ -1,14 +1,15 @@
 //! What a capture itself tells, whatever is asked of it later: each question is answered once, when it is first asked.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
-use darkroot_colour::Xy;
 use darkroot_photo::Capture;
 
+use crate::auto_white::Seen;
 use crate::light::LinearLight;
 use crate::noise::{self, Window};
 use crate::survey::{self, Survey};
-use crate::white::{self, CameraMatrix};
+use crate::white::CameraMatrix;
+use crate::whites::Whites;
 
 /// A capture, and what was found out about it. No setting has a say in it, so it serves every plan.
 #[derive(Debug)]
@@ -18,9 +19,7 @@ pub struct Analysis {
     matrix: Option<CameraMatrix>,
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
-    estimated_neutral: OnceLock<Option<[f64; 3]>>,
-    /// The neutral that was last asked for, with its white.
-    last_white: Mutex<Option<([f64; 3], Xy)>>,
+    colours: OnceLock<Option<Seen>>,
 }
 
 impl Analysis {
@@ -32,15 +31,14 @@ impl Analysis {
             capture,
             survey: OnceLock::new(),
             noise: OnceLock::new(),
-            estimated_neutral: OnceLock::new(),
-            last_white: Mutex::new(None),
+            colours: OnceLock::new(),
         }
     }
 
     /// An analysis that has looked at the frame already: plans from it cost next to nothing.
     pub fn of(capture: Arc<Capture>) -> Self {
         let analysis = Self::deferred(capture);
-        rayon::join(|| analysis.estimated_neutral(), || analysis.noise());
+        rayon::join(|| analysis.colours(), || analysis.noise());
         analysis
     }
 
@@ -64,25 +62,14 @@ impl Analysis {
         self.survey.get_or_init(|| survey::survey(&self.capture, &self.light))
     }
 
-    /// Camera RGB of the light's white as the picture shows it; `None` where too little of it is usable.
-    pub fn estimated_neutral(&self) -> Option<[f64; 3]> {
-        *self.estimated_neutral.get_or_init(|| white::estimate(self.survey(), self.matrix()))
+    /// Colours that tell of the light; `None` where too little of the picture is usable.
+    pub(crate) fn colours(&self) -> Option<&Seen> {
+        self.colours.get_or_init(|| Seen::of(self.survey())).as_ref()
     }
 
-    /// Chromaticity of the white that gives a neutral, by the maker's matrices. The last one is remembered: most settings
-    /// that a person changes leave the white as it is.
-    #[expect(clippy::float_cmp, reason = "the very same neutral")]
-    pub fn white_of(&self, neutral: [f64; 3]) -> Option<Xy> {
-        let matrix = self.matrix.as_ref()?;
-        let mut last = self.last_white.lock().unwrap_or_else(PoisonError::into_inner);
-        match *last {
-            Some((known, white)) if known == neutral => Some(white),
-            _ => {
-                let white = matrix.white_of(neutral);
-                *last = Some((neutral, white));
-                Some(white)
-            }
-        }
+    /// Camera RGB of the light's white as the picture makes it most probable; `None` where too little of it is usable.
+    pub fn estimated_neutral(&self, whites: &Whites<'_>) -> Option<[f64; 3]> {
+        self.colours().map(|seen| seen.neutral(whites))
     }
 
     /// Windows in which noise shows; none for other sensors than Bayer.

@@ -47,8 +47,11 @@ pub mod survey;
 pub use survey::Survey;
 pub mod white;
 pub use white::CameraMatrix;
+pub mod whites;
+pub use whites::Whites;
 
 mod auto_exposure;
+mod auto_white;
 mod finish;
 mod grid;
 mod in_turn;

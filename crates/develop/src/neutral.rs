@@ -8,6 +8,7 @@ use crate::analysis::Analysis;
 use crate::error::{Error, SpotFault};
 use crate::recipe::Balance;
 use crate::survey;
+use crate::whites::Whites;
 
 /// Daylight at noon, K.
 const NOON: f64 = 5503.0;
@@ -19,6 +20,7 @@ const SPOT_LIGHT: (f64, f64) = (1e-3, 0.95);
 /// Camera RGB of the light's white. What had to be assumed becomes a note.
 pub(crate) fn neutral(
     analysis: &Analysis,
+    whites: &Whites<'_>,
     balance: Balance,
     crop: Rect,
     notes: &mut Vec<String>,
@@ -27,7 +29,7 @@ pub(crate) fn neutral(
     if *capture.counts.layout() == Layout::Monochrome {
         return Ok([1.0; 3]);
     }
-    let of_white = |xy: Xy| of_white(analysis, xy);
+    let of_white = |xy: Xy| whites.neutral_of(xy).ok_or(Error::NoMatrix);
     match balance {
         Balance::AsShot => match capture.as_shot {
             _ if capture.balance_applied => Ok([1.0; 3]),
@@ -37,10 +39,10 @@ pub(crate) fn neutral(
             None if *capture.counts.layout() == Layout::Rgb => Ok([1.0; 3]),
             None => {
                 notes.push("no white balance is recorded; it was estimated from the picture".to_owned());
-                Ok(analysis.estimated_neutral().unwrap_or([1.0; 3]))
+                Ok(analysis.estimated_neutral(whites).unwrap_or([1.0; 3]))
             }
         },
-        Balance::Auto => Ok(analysis.estimated_neutral().unwrap_or_else(|| {
+        Balance::Auto => Ok(analysis.estimated_neutral(whites).unwrap_or_else(|| {
             notes.push(
                 "the picture is too dark or too bright to estimate a white balance; none was applied".into(),
             );
@@ -61,16 +63,6 @@ pub(crate) fn neutral(
             if sound { Ok(m.map(|v| 1.0 / v)) } else { Err(Error::Multipliers) }
         }
     }
-}
-
-/// Neutral of a white by the camera's matrices. Samples that the camera has balanced already have their white at
-/// (1,1,1), and another white is relative to it.
-fn of_white(analysis: &Analysis, xy: Xy) -> Result<[f64; 3], Error> {
-    let neutral = analysis.matrix().and_then(|m| m.neutral_of(xy)).ok_or(Error::NoMatrix)?;
-    Ok(match (analysis.capture().balance_applied, analysis.capture().as_shot) {
-        (true, Some(AsShot::Neutral(shot))) => [0, 1, 2].map(|c| neutral[c] / shot[c]),
-        _ => neutral,
-    })
 }
 
 /// Neutral of a grey spot, given in pixels of the developed picture.
@@ -107,13 +99,4 @@ fn spot(analysis: &Analysis, crop: Rect, (x, y): (usize, usize), side: usize) ->
 pub(crate) fn multipliers(neutral: [f64; 3]) -> [f32; 3] {
     let largest = neutral.iter().copied().fold(0.0, f64::max);
     neutral.map(|v| (largest / v) as f32)
-}
-
-/// Chromaticity of the light's white, where something tells it.
-pub(crate) fn white_of(analysis: &Analysis, neutral: [f64; 3]) -> Option<Xy> {
-    let capture = analysis.capture();
-    analysis.white_of(match (capture.balance_applied, capture.as_shot) {
-        (true, Some(AsShot::Neutral(shot))) => [0, 1, 2].map(|c| neutral[c] * shot[c]),
-        _ => neutral,
-    })
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{RgbSpace, TransferCurve, Xy, white};
-use darkroot_photo::{Capture, Correction, Layout, Orientation, Rect, Size};
+use darkroot_photo::{AsShot, Capture, Correction, Layout, Orientation, Rect, Size};
 use darkroot_profile::{Model, PlaneModel, Profile};
 
 use crate::analysis::Analysis;
@@ -20,6 +20,7 @@ use crate::survey::Survey;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
 use crate::view::Scale;
+use crate::whites::Whites;
 use crate::{auto_exposure, neutral};
 
 /// What the colours of a picture were computed with.
@@ -93,9 +94,10 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         Crop::Active => capture.active_area,
     };
     let mut notes = Vec::new();
-    let neutral = neutral::neutral(analysis, recipe.balance, crop, &mut notes)?;
+    let whites = whites(analysis, profile);
+    let neutral = neutral::neutral(analysis, &whites, recipe.balance, crop, &mut notes)?;
     let multipliers = neutral::multipliers(neutral);
-    let white = neutral::white_of(analysis, neutral);
+    let white = whites.white_of(neutral);
     let (colours, model) = colours(analysis, profile, neutral, white, &mut notes);
     // What the camera rendered for display has its look already.
     let curve = Curve::of(recipe.look).filter(|_| !capture.rendered);
@@ -141,6 +143,16 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         space: recipe.output.space,
         bits: recipe.output.bits,
     })
+}
+
+/// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another
+/// white is relative to it.
+fn whites<'a>(analysis: &'a Analysis, profile: Option<&'a Profile>) -> Whites<'a> {
+    let whites = Whites::of(analysis.matrix(), profile);
+    match (analysis.capture().balance_applied, analysis.capture().as_shot) {
+        (true, Some(AsShot::Neutral(shot))) => whites.applied(shot),
+        _ => whites,
+    }
 }
 
 fn filters(layout: &Layout) -> String {

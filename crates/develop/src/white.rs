@@ -3,10 +3,8 @@
 
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::temperature::{Temperature, daylight_xy};
-use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xy, Xyz, statistics, white};
+use darkroot_colour::{Matrix3, RgbSpace, Spectrum, Vector3, Xy, Xyz, white};
 use darkroot_photo::{Calibration, Capture};
-
-use crate::survey::Survey;
 
 /// The maker's matrices of one camera.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +53,18 @@ impl CameraMatrix {
             }
         }
         xy
+    }
+
+    /// Balanced camera RGB of surfaces under a light, as far as the matrices tell: XYZ through them.
+    pub(crate) fn colours(&self, light: &Spectrum, surfaces: &[(Spectrum, f64)]) -> Option<Vec<[f64; 3]>> {
+        let white = light.white();
+        let matrix = self.at(Temperature::of(white.xy()?).kelvin).xyz_to_camera;
+        let neutral = matrix * Vector3::from(white);
+        let seen = |surface: &Spectrum| {
+            let rgb = matrix * Vector3::from(surface.reflected_xyz(light));
+            rgb.component_div(&neutral).into()
+        };
+        (neutral.min() > 0.0).then(|| surfaces.iter().map(|(surface, _)| seen(surface)).collect())
     }
 
     /// Balanced camera RGB to XYZ relative to D50, (1,1,1) to D50 exactly, for the light whose neutral and
@@ -156,49 +166,6 @@ fn white_preserving(matrix: Matrix3) -> Matrix3 {
     } else {
         RgbSpace::SRGB.to_xyz_under(white::D50)
     }
-}
-
-/// Estimates the neutral from the picture: the densest place of the blocks' colours in log chromaticity, found
-/// by shifting a mean (Cheng, "Mean shift, mode seeking, and clustering", IEEE PAMI 17(8), 1995), kept near the
-/// Planckian locus where the camera's matrix is known. `None` when too little of the picture is usable.
-pub fn estimate(survey: &Survey, matrix: Option<&CameraMatrix>) -> Option<[f64; 3]> {
-    const DARKEST: f32 = 0.002;
-    const FEWEST: usize = 16;
-    let colours: Vec<[f64; 2]> = survey
-        .blocks
-        .iter()
-        .filter(|b| !b.clipped.contains(&true) && b.mean.iter().all(|&v| v > DARKEST))
-        .map(|b| b.mean.map(f64::from))
-        .map(|[r, g, b]| [(r / g).ln(), (b / g).ln()])
-        .collect();
-    if colours.len() < FEWEST {
-        return None;
-    }
-    let median = |k: usize| {
-        let mut values: Vec<f64> = colours.iter().map(|c| c[k]).collect();
-        statistics::median(&mut values).unwrap_or_default()
-    };
-    let mut centre = [median(0), median(1)];
-    for width in [0.5f64, 0.35, 0.25, 0.25, 0.25, 0.25] {
-        let (mut sum, mut weights) = ([0.0; 2], 0.0);
-        for c in &colours {
-            let distance2 = (c[0] - centre[0]).powi(2) + (c[1] - centre[1]).powi(2);
-            let weight = (-distance2 / (2.0 * width * width)).exp();
-            sum = [sum[0] + weight * c[0], sum[1] + weight * c[1]];
-            weights += weight;
-        }
-        if weights > 0.0 {
-            centre = sum.map(|s| s / weights);
-        }
-    }
-    let neutral = [centre[0].exp(), 1.0, centre[1].exp()];
-    let likely = matrix.and_then(|matrix| {
-        let white = Temperature::of(matrix.white_of(neutral));
-        let kept =
-            Temperature { kelvin: white.kelvin.clamp(2200.0, 12000.0), duv: white.duv.clamp(-0.015, 0.015) };
-        matrix.neutral_of(kept.xy())
-    });
-    Some(likely.unwrap_or(neutral))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // Helpers of tests; figures are meant to be seen.
 
+mod auto_white;
 mod chart_shots;
 mod data;
 mod estimated;
