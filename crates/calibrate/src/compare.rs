@@ -37,22 +37,24 @@ pub struct Compared {
     pub settings: String,
 }
 
+/// What is known of cameras in general under a light; `None` where its spectrum is not known.
+pub(crate) fn prior(light: &LightSource) -> Option<Prior> {
+    Prior::under(&Population::builtin()?, light.spectrum.as_ref()?)
+}
+
+/// What the models of the prior know beside the colours of a chart.
+pub(crate) fn knowledge<'a>(
+    reflectances: Option<&'a [Spectrum]>,
+    light: &'a LightSource,
+    prior: Option<&'a Prior>,
+) -> Option<Knowledge<'a>> {
+    let light = light.spectrum.as_ref()?;
+    Some(Knowledge { reflectances: reflectances?, light, prior: prior?, set: VirtualSet::builtin()? })
+}
+
 /// Fits every kind that can be fitted.
-pub(crate) fn compare(
-    samples: &Samples,
-    spectra: Option<&[Spectrum]>,
-    light: &LightSource,
-) -> Vec<(Compared, Option<Fit>)> {
-    let statistics = Population::builtin().zip(VirtualSet::builtin());
-    let prior = statistics.as_ref().zip(light.spectrum.as_ref()).and_then(|((population, set), spectrum)| {
-        Some((Prior::under(population, spectrum)?, *set, spectrum))
-    });
-    let background = match (spectra, &prior) {
-        (Some(reflectances), Some((prior, set, light))) => {
-            Background::Reflectances(Knowledge { reflectances, light, prior, set })
-        }
-        _ => Background::ColoursOnly,
-    };
+pub(crate) fn compare(samples: &Samples, knowledge: Option<Knowledge<'_>>) -> Vec<(Compared, Option<Fit>)> {
+    let background = knowledge.map_or(Background::ColoursOnly, Background::Reflectances);
     let one = |kind: Kind| match fit::fit_knowing(samples, kind, background) {
         Ok(fit) => {
             let (figures, settings) = (fit.figures(samples), fit.settings.clone());
@@ -66,14 +68,12 @@ pub(crate) fn compare(
 
 /// Takes one round of cross-validation into the estimates for patches left out: what a model makes of the group when it
 /// took part neither in the fit nor in the corrections. `places` are those of the samples among all patches.
-///
-/// The models of the prior take too long to be fitted for each fold: there the fit stays as it is and only the patch's
-/// own colour changes, which is most of it.
 pub(crate) fn cross_validate(
     compared: &mut [(Compared, Option<Fit>)],
     round: &CrossValidation,
     places: &[usize],
     samples: &Samples,
+    knowledge: Option<Knowledge<'_>>,
 ) -> Result<(), FitError> {
     let rgb: Vec<[f64; 3]> = places.iter().map(|i| round.rgb[*i]).collect();
     let raw = Samples::new(rgb, samples.xyz().to_vec(), samples.white())?;
@@ -84,19 +84,38 @@ pub(crate) fn cross_validate(
     for (compared, fit) in compared {
         let Some(fit) = fit else { continue };
         let kind = compared.kind;
-        let again = if kind.needs_spectra() { None } else { Some(fit::fit(&unseen, kind)?.fit.left_out) };
-        for i in &left_out {
-            fit.left_out[*i] = again.as_ref().map_or_else(
-                || {
-                    let (now, then) = (fit.model.xyz(unseen.rgb()[*i]), fit.model.xyz(samples.rgb()[*i]));
-                    let Xyz { x, y, z } = fit.left_out[*i];
-                    Xyz::new(x + now.x - then.x, y + now.y - then.y, z + now.z - then.z)
-                },
-                |left_out| left_out[*i],
-            );
+        let again: Vec<Xyz> = match knowledge.filter(|_| kind.needs_spectra()) {
+            Some(knowledge) => {
+                let model = without(&left_out, &unseen, knowledge, kind)?;
+                left_out.iter().map(|i| model.xyz(unseen.rgb()[*i])).collect()
+            }
+            None => {
+                let estimates = fit::fit(&unseen, kind)?.fit.left_out;
+                left_out.iter().map(|i| estimates[*i]).collect()
+            }
+        };
+        for (i, estimate) in left_out.iter().zip(again) {
+            fit.left_out[*i] = estimate;
         }
     }
     Ok(())
+}
+
+/// A model of the prior, fitted without some of the patches.
+fn without(
+    left_out: &[usize],
+    samples: &Samples,
+    knowledge: Knowledge<'_>,
+    kind: Kind,
+) -> Result<Model, FitError> {
+    let kept: Vec<usize> = (0..samples.len()).filter(|i| !left_out.contains(i)).collect();
+    let reflectances: Vec<Spectrum> = kept.iter().map(|i| knowledge.reflectances[*i].clone()).collect();
+    let rest = Samples::new(
+        kept.iter().map(|i| samples.rgb()[*i]).collect(),
+        kept.iter().map(|i| samples.xyz()[*i]).collect(),
+        samples.white(),
+    )?;
+    fit::spectral::model_only(&rest, Knowledge { reflectances: &reflectances, ..knowledge }, kind)
 }
 
 /// Mean dE2000 of a model on the samples at another exposure, scaled back.
@@ -108,9 +127,12 @@ fn scaled_error(model: &Model, samples: &Samples, stops: i32) -> f64 {
 }
 
 /// The kind with the least mean error on patches left out; `spectral`, else `half`, else `anchored` where they are as
-/// good. Models whose colours change with exposure are not among them.
-pub(crate) fn best(compared: &[(Compared, Option<Fit>)]) -> Option<Kind> {
+/// good. Models whose colours change with exposure are not among them, and none of `refused`.
+pub(crate) fn best(compared: &[(Compared, Option<Fit>)], refused: &[Kind]) -> Option<Kind> {
     let score = |c: &Compared| {
+        if refused.contains(&c.kind) {
+            return None;
+        }
         let figures = c.result.as_ref().ok()?;
         let mean = figures.leave_one_out?.de2000.mean;
         (mean.is_finite() && c.kind.keeps_exposure()).then_some((c.kind, mean))

@@ -8,10 +8,12 @@
 
 use darkroot_colour::{Spectrum, Vector3, Xyz};
 use darkroot_profile::fit::{Fit, FitError};
+use darkroot_profile::lint::{self, Severity};
 use darkroot_profile::{Calibration, Kind};
 
 use crate::balanced::Balanced;
 use crate::compare::{self, Compared};
+use crate::patch::with_spectra;
 use crate::{CrossValidation, JudgedPatch, LightSource, MeasuredPatch};
 
 /// What a person decides about the fit.
@@ -61,6 +63,8 @@ pub struct Calibrated {
     pub white_rgb: [f64; 3],
     /// Every patch, with what the model makes of it.
     pub patches: Vec<JudgedPatch>,
+    /// Reflectance and balanced camera RGB of the usable patches, where reflectances are known or could be recovered.
+    pub seen: Vec<(Spectrum, [f64; 3])>,
     /// What had to be assumed.
     pub notes: Vec<String>,
 }
@@ -75,21 +79,28 @@ pub fn calibrate(
     choice: &Choice,
 ) -> Result<Calibrated, CalibrateError> {
     let mut notes = Vec::new();
+    let patches = &*with_spectra(patches, light, &mut notes);
     let balanced = Balanced::new(patches, light, &mut notes)?;
     let Balanced { usable, samples, white_rgb, to_d50, .. } = &balanced;
 
     let spectra: Option<Vec<Spectrum>> = usable.iter().map(|p| p.reference.spectrum()).collect();
-    let mut compared = compare::compare(samples, spectra.as_deref(), light);
+    let prior = compare::prior(light);
+    let knowledge = compare::knowledge(spectra.as_deref(), light, prior.as_ref());
+    let mut compared = compare::compare(samples, knowledge);
     let places: Vec<usize> = (0..patches.len()).filter(|i| patches[*i].excluded.is_none()).collect();
     for round in &choice.cross_validation {
-        compare::cross_validate(&mut compared, round, &places, samples)?;
+        compare::cross_validate(&mut compared, round, &places, samples, knowledge)?;
     }
     for (compared, fit) in &mut compared {
         if let (Ok(figures), Some(fit)) = (&mut compared.result, fit) {
             *figures = fit.figures(samples);
         }
     }
-    let (kind, fit) = chosen(&compared, choice.kind)?;
+    let sound = |kind: Kind, fit: &Fit| {
+        let calibration = Calibration::new(light.light.clone(), kind, fit.model.then(to_d50));
+        lint::check(&calibration).iter().all(|finding| finding.severity < Severity::Failure)
+    };
+    let (kind, fit) = chosen(&compared, choice.kind, sound)?;
 
     let figures = fit.figures(samples);
     let model = fit.model.then(to_d50).rounded();
@@ -109,15 +120,25 @@ pub fn calibrate(
         patches: judged.iter().filter(|j| j.excluded.is_none()).map(JudgedPatch::for_profile).collect(),
     };
     let compared = compared.into_iter().map(|(c, _)| c).collect();
-    Ok(Calibrated { calibration, compared, white_rgb: *white_rgb, patches: judged, notes })
+    let seen = spectra.into_iter().flatten().zip(samples.rgb().iter().copied()).collect();
+    Ok(Calibrated { calibration, compared, white_rgb: *white_rgb, patches: judged, seen, notes })
 }
 
-/// The model that was asked for, or the best.
+/// The model that was asked for, or the best of those that are sound; the best of all where none is.
 fn chosen(
     compared: &[(Compared, Option<Fit>)],
     wanted: Option<Kind>,
+    sound: impl Fn(Kind, &Fit) -> bool,
 ) -> Result<(Kind, &Fit), CalibrateError> {
-    let kind = wanted.or_else(|| compare::best(compared)).unwrap_or(Kind::Linear);
+    let mut refused = Vec::new();
+    let mut best = || loop {
+        let kind = compare::best(compared, &refused)?;
+        match compared.iter().find(|(c, _)| c.kind == kind) {
+            Some((_, Some(fit))) if !sound(kind, fit) => refused.push(kind),
+            _ => return Some(kind),
+        }
+    };
+    let kind = wanted.or_else(&mut best).or_else(|| compare::best(compared, &[])).unwrap_or(Kind::Linear);
     match compared.iter().find(|(c, _)| c.kind == kind) {
         Some((_, Some(fit))) => Ok((kind, fit)),
         Some((Compared { result: Err(fault), .. }, None)) => Err(fault.clone().into()),
@@ -158,9 +179,13 @@ mod tests {
             let compared = found.compared.iter().find(|c| c.kind == kind).unwrap();
             compared.result.as_ref().unwrap().leave_one_out.unwrap().de2000.mean
         };
-        assert!(matches!(found.calibration.kind, Kind::Half | Kind::Anchored | Kind::Root(_)));
+        assert!(!matches!(found.calibration.kind, Kind::Linear | Kind::Polynomial(_)));
         assert!(mean(found.calibration.kind) < 0.7 * mean(Kind::Linear), "{:?}", found.calibration.kind);
-        // Without spectra the models of the prior say what they lack.
+        assert!(found.notes[0].contains("most probable spectra"), "{:?}", found.notes);
+        // Under a light without a spectrum the models of the prior say what they lack.
+        let unknown = LightSource { spectrum: None, ..d50() };
+        let found =
+            calibrate(&unknown, &patches(&Camera::simulated_one(), &light, 0.3), &Choice::default()).unwrap();
         let spectral = found.compared.iter().find(|c| c.kind == Kind::Spectral).unwrap();
         assert!(spectral.result.as_ref().unwrap_err().to_string().contains("reflectances"));
     }

@@ -7,6 +7,7 @@ use darkroot_colour::{Xyz, white};
 use darkroot_profile::{Calibration, Errors, Model, Profile, Summary};
 
 use crate::balanced::Balanced;
+use crate::patch::with_spectra;
 use crate::{CalibrateError, JudgedPatch, LightSource, MeasuredPatch};
 
 /// What the patches of a shot say about a profile.
@@ -169,6 +170,7 @@ pub fn by_model(
     patches: &[MeasuredPatch],
     model: &Model,
 ) -> Result<(Vec<JudgedPatch>, Errors), CalibrateError> {
+    let patches = &*with_spectra(patches, light, &mut Vec::new());
     let balanced = Balanced::new(patches, light, &mut Vec::new())?;
     let judged: Vec<JudgedPatch> = patches.iter().map(|p| balanced.judged(p, model, None)).collect();
     let used = || judged.iter().filter(|j| j.excluded.is_none());

@@ -1,10 +1,16 @@
 //! A patch of a chart: as it was measured, and with what a model makes of it.
 
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
 use darkroot_chart::ReferenceColour;
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::difference::de2000;
-use darkroot_colour::{Vector3, Xyz, white};
+use darkroot_colour::measured::Measured;
+use darkroot_colour::spectrum::SAMPLES;
+use darkroot_colour::{Spectrum, Vector3, Xyz, white};
 use darkroot_profile::Patch;
+use darkroot_profile::fit::recovered::Recovery;
 
 use crate::LightSource;
 
@@ -93,6 +99,42 @@ impl JudgedPatch {
             de2000: round(self.de2000),
         }
     }
+}
+
+/// The patches, with the most probable reflectances where the reference has only colours under D50 and the light's spectrum
+/// is known. What was done, and how far it can be off, comes to `notes`.
+pub(crate) fn with_spectra<'a>(
+    patches: &'a [MeasuredPatch],
+    light: &LightSource,
+    notes: &mut Vec<String>,
+) -> Cow<'a, [MeasuredPatch]> {
+    static RECOVERY: OnceLock<Option<Recovery>> = OnceLock::new();
+    let known = |p: &MeasuredPatch| p.reference.spectrum().is_some();
+    let recovery = RECOVERY.get_or_init(Recovery::builtin);
+    let (Some(spectrum), Some(recovery)) = (&light.spectrum, recovery) else { return Cow::Borrowed(patches) };
+    if patches.iter().all(known) {
+        return Cow::Borrowed(patches);
+    }
+    let nm: Vec<f64> = (0..SAMPLES).map(Spectrum::wavelength).collect();
+    let (mut uncertain, mut count) = (0.0, 0.0);
+    let mut recovered = |patch: &MeasuredPatch| {
+        let found = recovery.of(patch.reference.xyz_d50()).filter(|_| !known(patch));
+        let measured = found.as_ref().and_then(|f| Measured::new(&nm, &f.reflectance.0).ok());
+        if let Some(found) = found {
+            uncertain += found.uncertainty(spectrum);
+            count += 1.0;
+        }
+        let reference = measured.map_or_else(|| patch.reference.clone(), ReferenceColour::Reflectance);
+        MeasuredPatch { reference, ..patch.clone() }
+    };
+    let patches: Vec<MeasuredPatch> = patches.iter().map(&mut recovered).collect();
+    notes.push(format!(
+        "the reference has colours under D50, not spectra: the most probable spectra were taken, whose colours under {} can \
+         be off by dE2000 {:.1}; a spectral reference would be exact",
+        light.light.name,
+        uncertain / f64::max(count, 1.0)
+    ));
+    Cow::Owned(patches)
 }
 
 /// How reference colours become XYZ under the light.

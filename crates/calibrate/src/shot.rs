@@ -46,6 +46,8 @@ pub struct Chart<'a> {
     pub colours: Vec<ReferenceColour>,
     /// The same relative to D50.
     pub expected: Vec<Xyz>,
+    /// What had to be assumed of the reference.
+    pub notes: Vec<String>,
 }
 
 impl<'a> Chart<'a> {
@@ -55,24 +57,44 @@ impl<'a> Chart<'a> {
     /// A reference that lacks patches, or is that of another chart.
     pub fn new(layout: &'a ChartLayout, reference: &Reference) -> Result<Self, ShotError> {
         let names: Vec<&str> = layout.patches.iter().map(|p| p.name.as_str()).collect();
-        let colours = reference.for_patches(&names).map_err(ShotError::Reference)?;
-        let expected: Vec<Xyz> = colours.iter().map(ReferenceColour::xyz_d50).collect();
-        let chart = Self { layout, colours, expected };
-        chart.check()?;
-        Ok(chart)
+        let of = |colours: Vec<ReferenceColour>, notes| {
+            let expected: Vec<Xyz> = colours.iter().map(ReferenceColour::xyz_d50).collect();
+            Self { layout, colours, expected, notes }
+        };
+        let missing = match reference.for_patches(&names) {
+            Ok(colours) => {
+                let chart = of(colours, Vec::new());
+                return chart.check().map(|()| chart);
+            }
+            Err(missing) => missing,
+        };
+        // Names of another custom: which sequence is meant, the colours of the chart tell.
+        let named = |(sequence, colours)| {
+            let note = format!("the reference has other names for the patches: they were taken {sequence}");
+            of(colours, vec![note])
+        };
+        let charts = reference.in_sequence(layout.columns, layout.rows).into_iter().map(named);
+        let nearest = charts.min_by(|a, b| a.off().total_cmp(&b.off()));
+        let chart = nearest.ok_or(ShotError::Reference(missing))?;
+        chart.check().map(|()| chart)
     }
 
     /// Whether the colours are those of the layout, roughly.
     fn check(&self) -> Result<(), ShotError> {
         const MOST: f64 = 15.0;
-        let pairs = self.layout.patches.iter().zip(&self.expected);
-        let off = pairs.map(|(patch, xyz)| de2000(xyz.lab(white::D50), patch.lab));
-        let mean = off.sum::<f64>() / self.colours.len().max(1) as f64;
+        let mean = self.off();
         if mean <= MOST {
             return Ok(());
         }
         let chart = self.layout.title.clone();
         Err(ShotError::ReferenceColours(ReferenceError::OtherChart { chart, off: mean }))
+    }
+
+    /// How far the colours are from those of the layout, mean dE2000.
+    fn off(&self) -> f64 {
+        let pairs = self.layout.patches.iter().zip(&self.expected);
+        let off = pairs.map(|(patch, xyz)| de2000(xyz.lab(white::D50), patch.lab));
+        off.sum::<f64>() / self.colours.len().max(1) as f64
     }
 
     fn name(&self, i: usize) -> &str {

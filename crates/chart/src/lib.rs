@@ -18,7 +18,7 @@ pub mod glare;
 pub use glare::ChannelLight;
 
 pub mod reference;
-pub use reference::{Reference, ReferenceColour};
+pub use reference::{Reference, ReferenceColour, Sequence};
 
 pub mod windows;
 

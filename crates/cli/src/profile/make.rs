@@ -6,7 +6,9 @@ use anyhow::{Context as _, Result, bail};
 use clap::Args;
 use darkroot::make_profile::MadeLight;
 use darkroot::shot::{Gate, ShotOptions, Verdict};
-use darkroot::{ChartRequest, Error, Settings, charts, light, make_profile, report};
+use darkroot::{
+    ChartRequest, Error, MadeProfile, Settings, chart_camera, charts, light, make_profile, report,
+};
 use darkroot_profile::Kind;
 use serde_json::json;
 
@@ -134,6 +136,11 @@ pub(super) struct Make {
     #[arg(long, value_name = "MODEL", value_parser = crate::values::kind)]
     model: Option<Kind>,
 
+    /// Keep the camera in the profile, not models for the lights of the shots: colours for any light follow from it, so that
+    /// a shot in daylight serves the evening, too
+    #[arg(long, conflicts_with = "model")]
+    as_camera: bool,
+
     /// Allow a model that is no good for pictures (plain polynomials)
     #[arg(long)]
     force: bool,
@@ -192,7 +199,11 @@ impl Make {
             bail!("`--average` is for several shots under one light; leave it out, or give more shots");
         }
         let deadline = self.shot.deadline.times(self.shots.len());
-        let make = || make_profile(&request, &Settings::default());
+        let make = || {
+            let made = make_profile(&request, &Settings::default())?;
+            let camera = self.as_camera.then(|| chart_camera(&made)).transpose()?;
+            Ok(MadeProfile { profile: camera.unwrap_or_else(|| made.profile.clone()), ..made })
+        };
         let made = match deadline.over(first, 0, |_| (), make) {
             Ok(made) => made,
             Err(fault @ Error::SeveralShots { .. }) => bail!(fault),
@@ -219,6 +230,13 @@ impl Make {
                 shown(&made.profile.camera().name())
             ));
             made.lights.iter().for_each(say_light);
+            for judged in made.profile.known_camera().into_iter().flat_map(|known| known.figures()) {
+                let (light, errors) = (&judged.light, judged.errors.de2000);
+                crate::say(format_args!(
+                    "  the camera under {light}, left out, dE2000: mean {:.2}, max {:.2}",
+                    errors.mean, errors.max
+                ));
+            }
         }
         Ok(Outcome::Done)
     }

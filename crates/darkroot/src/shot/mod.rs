@@ -147,6 +147,7 @@ fn measured(
     refuse(path, &gates, options.accept)?;
 
     let mut notes = found.notes;
+    notes.extend(chart.notes.iter().cloned());
     if rendered::is_rendered(path) {
         notes.insert(0, RENDERED.to_owned());
     }

@@ -25,6 +25,46 @@ fn one_shot_makes_a_profile_that_beats_the_matrix() {
 }
 
 #[test]
+fn a_shot_can_be_kept_as_a_camera_that_knows_every_light() {
+    let desk = desk(&daylight());
+    let run = profile(&desk, &["-o", "p.toml", "--as-camera"]);
+    assert!(run.err.contains("the camera under D50, left out"), "{}", run.err);
+    let text = String::from_utf8(desk.read("p.toml")).unwrap();
+    assert!(text.contains("[sensitivities]") && text.contains("the camera by 1 shot of a chart"), "{text}");
+    assert_eq!(desk.run(&["profile", "lint", "p.toml"]).code, 0);
+    let developed = desk.develop(&["chart.dng", "--profile", "p.toml", "--illuminant", "FL11"]);
+    assert!(developed.err.contains("profile for Darkroot Simulated One"), "{}", developed.err);
+    let by_chromaticity = profile(&desk, &["-o", "q.toml", "--as-camera", "--light", "0.36,0.37"]);
+    assert!(by_chromaticity.code != 0, "{}", by_chromaticity.err);
+}
+
+#[test]
+fn a_reference_may_name_its_patches_by_another_custom() {
+    let desk = desk(&daylight());
+    let d50 = light("D50");
+    let table = |name: &dyn Fn(usize) -> String| {
+        let row = |(i, s): (usize, Spectrum)| {
+            let lab = s.reflected_xyz(&d50).lab(d50.white());
+            format!("{},{:.3},{:.3},{:.3}\n", name(i), lab.l, lab.a, lab.b)
+        };
+        let rows = darkroot_simulate::chart::reflectances().into_iter().enumerate().map(row);
+        format!("name,L,a,b\n{}", rows.collect::<String>())
+    };
+    let cell = |across: usize, down: usize| format!("{}{}", ["A", "B", "C", "D", "E", "F"][across], down + 1);
+    desk.put("rows.csv", table(&|i| cell(i / 6, i % 6)));
+    desk.put("columns.csv", table(&|i| cell(i % 6, i / 6)));
+    desk.put("mixed.csv", table(&|i| format!("x{}", i / 2)));
+    for (file, words) in [
+        ("rows.csv", "letters for rows"),
+        ("columns.csv", "letters for columns"),
+        ("mixed.csv", "sequence of the file"),
+    ] {
+        let run = profile(&desk, &["-o", "p.toml", "--overwrite", "--reference", file]);
+        assert!(run.code == 0 && run.err.contains(words), "{file}: {}", run.err);
+    }
+}
+
+#[test]
 fn a_profile_from_a_shot_is_nearly_one_from_true_values() {
     let desk = desk(&Exposure { glare: 0.0, ..daylight() });
     let run = profile(&desk, &["-o", "p.toml", "--model", "anchored", "--json"]);
