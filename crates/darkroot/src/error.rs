@@ -67,6 +67,22 @@ pub enum Error {
         /// As it was given.
         text: String,
     },
+    /// Shots of a chart that make no camera.
+    #[error(
+        "the shots under {light} make no camera: that takes a light of known spectrum and a chart of known colours"
+    )]
+    NoCamera {
+        /// The light.
+        light: String,
+    },
+    /// An illuminant was named where the colours are those of a matrix.
+    #[error(
+        "the light {light} needs a profile or a camera that can be estimated; here the file's own matrix gives the colours"
+    )]
+    LightOfMatrix {
+        /// The light.
+        light: String,
+    },
     /// A shot of a chart cannot be used.
     #[error("{path}: {}", sentence(source), path = shown(path))]
     Chart {

@@ -19,12 +19,13 @@ pub fn find(text: &str) -> Result<LightSource, Error> {
 
 /// What a person can name, in words.
 pub(crate) fn known() -> String {
+    format!("{}; or a CSV file of spectra (lamp.csv, lamps.csv:NAME)", known_names())
+}
+
+/// The same without files.
+pub(crate) fn known_names() -> String {
     let names: Vec<&str> = LightSource::names().collect();
-    format!(
-        "{}; a temperature of 1000 to 25000 K (5500K); a chromaticity (0.34,0.36); or a CSV file of spectra (lamp.csv, \
-         lamps.csv:NAME)",
-        names.join(", ")
-    )
+    format!("{}; a temperature of 1000 to 25000 K (5500K); a chromaticity (0.34,0.36)", names.join(", "))
 }
 
 /// Lights by other names that people have for them.

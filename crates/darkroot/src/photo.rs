@@ -16,8 +16,8 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use darkroot_develop::{Analysis, Plan};
-use darkroot_photo::Capture;
+use darkroot_develop::{Analysis, CameraMatrix, Plan, Whites};
+use darkroot_photo::{Capture, Layout};
 use darkroot_raw::{Decoder, Limits};
 
 use crate::estimate::Estimated;
@@ -64,6 +64,40 @@ impl Photo {
         darkroot_raw::decode(bytes, decoder, limits).map(Self::from)
     }
 
+    /// As [`Photo::open_with`] the decoder of the settings, and makes ready meanwhile, on another thread, what the header of
+    /// the file tells: the camera where the store has no profile for it, and the model for the white as shot.
+    ///
+    /// # Errors
+    /// As [`Photo::open`].
+    pub fn open_for(
+        bytes: &[u8],
+        store: &ProfileStore,
+        settings: &Settings,
+    ) -> Result<Self, darkroot_raw::Error> {
+        let foreseen = || {
+            let header = Self::from(darkroot_raw::header(bytes, &settings.limits).ok()?);
+            let matrix = CameraMatrix::of(&header.capture);
+            let chosen = header.profile(store, settings).ok()??;
+            let known = chosen.profile.known_camera()?;
+            let white = Whites::of(matrix.as_ref(), Some(&chosen.profile)).as_shot(&header.capture)?;
+            known.model_for(white);
+            drop(chosen);
+            Some(header)
+        };
+        let (photo, header) =
+            rayon::join(|| Self::open_with(bytes, settings.decoder, &settings.limits), foreseen);
+        let photo = photo?;
+        let same = |header: &Self| {
+            let (a, b) = (&header.capture, &photo.capture);
+            let balance = |capture: &Capture| capture.analog_balance.map(f64::to_bits);
+            a.camera == b.camera && a.calibrations == b.calibrations && balance(a) == balance(b)
+        };
+        Ok(match header.filter(same) {
+            Some(header) => Self { estimated: header.estimated, ..photo },
+            None => photo,
+        })
+    }
+
     /// The embedded JPEG of a raw file, which the camera rendered for display; `None` when it has none. A
     /// [look](darkroot_develop::Look) has no say in its plan, nor has a profile.
     ///
@@ -107,10 +141,11 @@ impl Photo {
     }
 
     /// The profile that gives the colours, with the place it is from: where the store has none for the camera, what its
-    /// matrix tells of it ([`Photo::estimated`]). `None` where the file's own matrices serve as they are.
+    /// matrix tells of it ([`Photo::estimated`]). `None` where the file's own matrices serve as they are. Where the settings
+    /// name a light, the profile is the one for that light alone.
     ///
     /// # Errors
-    /// A file that cannot be read, is no profile, or is for another camera.
+    /// A file that cannot be read, is no profile, or is for another camera; a light where there is no profile.
     pub fn profile<'a>(
         &'a self,
         store: &'a ProfileStore,
@@ -119,6 +154,23 @@ impl Photo {
         if self.capture.rendered {
             return Ok(None);
         }
+        let chosen = self.any_profile(store, settings)?;
+        match (&settings.light, chosen) {
+            (None, chosen) => Ok(chosen),
+            (Some(light), Some(chosen)) => Ok(Some(chosen.under(light))),
+            (Some(_), None) if *self.capture.counts.layout() == Layout::Monochrome => Ok(None),
+            (Some(light), None) => {
+                Err(Box::new(crate::Error::LightOfMatrix { light: light.light.name.clone() }))
+            }
+        }
+    }
+
+    /// The profile for all lights.
+    fn any_profile<'a>(
+        &'a self,
+        store: &'a ProfileStore,
+        settings: &Settings,
+    ) -> Result<Option<ChosenProfile<'a>>, Box<crate::Error>> {
         let found = store.for_camera(&self.capture.camera, &settings.profile).map_err(Box::new)?;
         if found.is_some() || settings.profile != ProfileChoice::Automatic {
             return Ok(found);

@@ -7,9 +7,10 @@ use std::sync::OnceLock;
 
 use darkroot_photo::Camera;
 use darkroot_profile::export::dcp;
-use darkroot_profile::{Profile, ProfileCamera};
+use darkroot_profile::{Calibration, Kind, Profile, ProfileCamera};
 
 use crate::Error;
+use crate::light::LightSource;
 use crate::settings::ProfileChoice;
 use crate::shown;
 
@@ -42,6 +43,30 @@ pub struct ChosenProfile<'a> {
     pub place: Cow<'a, str>,
     /// Whether it was estimated, because there is no other.
     pub estimated: bool,
+}
+
+impl ChosenProfile<'_> {
+    /// The same for one light alone, whatever the white: computed for its spectrum where the profile is a camera, else what the
+    /// profile has for its white.
+    #[must_use]
+    pub(crate) fn under(self, light: &LightSource) -> Self {
+        let computed = || self.profile.known_camera()?.model_under(light.spectrum.as_ref()?);
+        let model = computed().unwrap_or_else(|| self.profile.model_for(light.light.xy));
+        let kind = match self.profile.known_camera() {
+            Some(_) => Kind::Spectral,
+            None => self.profile.calibrations()[0].kind,
+        };
+        let calibration = Calibration::new(light.light.clone(), kind, model);
+        let (camera, origin) = (self.profile.camera().clone(), self.profile.origin().clone());
+        match Profile::new(camera, vec![calibration], origin) {
+            Some(profile) => Self {
+                profile: Cow::Owned(profile),
+                place: Cow::Owned(format!("{}, for {}", self.place, light.light.name)),
+                ..self
+            },
+            None => self,
+        }
+    }
 }
 
 /// Profiles by camera.

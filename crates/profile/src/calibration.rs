@@ -181,6 +181,39 @@ impl Profile {
     }
 }
 
+/// How far a photograph's light is from the lights of a profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FarLight {
+    /// The nearest light of the profile.
+    pub nearest: Light,
+    /// By how much the colours are to be expected to be off beyond the profile's own error, mean dE2000.
+    pub more: f64,
+}
+
+/// dE2000 for each mired by which a light is warmer, or bluer, than the one that a model was made for, and the error of
+/// models in their own light: five cameras and 253 surfaces, models for A, D50 and D65 under black bodies and daylight of 80
+/// to 400 mired (`docs/colour.md`). The two add up as squares.
+const WARMER: f64 = 0.0105;
+const BLUER: f64 = 0.014;
+const OWN_ERROR: f64 = 0.6;
+/// Errors that nobody is told of.
+const SMALL: f64 = 0.3;
+
+impl Profile {
+    /// Whether a photograph of this white is beyond all lights of the profile by so much that it shows. `None` for whites
+    /// that are near or between them, and for profiles that are cameras, which know every light.
+    pub fn far_from(&self, white: Xy) -> Option<FarLight> {
+        let Knowledge::Calibrations(all) = &self.knowledge else { return None };
+        let mired = |kelvin: f64| 1e6 / kelvin;
+        let off = |c: &Calibration| mired(Temperature::of(white).kelvin) - mired(c.light.kelvin());
+        let nearest = all.iter().min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
+        let between = all.iter().any(|c| off(c) > 0.0) && all.iter().any(|c| off(c) < 0.0);
+        let slope = if off(nearest) > 0.0 { WARMER } else { BLUER };
+        let more = OWN_ERROR.hypot(slope * off(nearest)) - OWN_ERROR;
+        (!between && more >= SMALL).then(|| FarLight { nearest: nearest.light.clone(), more })
+    }
+}
+
 fn between(calibrations: &[Calibration], kelvin: f64) -> Model {
     let mired = |c: &Calibration| 1e6 / c.light.kelvin();
     let wanted = 1e6 / kelvin;
@@ -211,6 +244,16 @@ mod tests {
         };
         let both = vec![calibration("A", white::A_XY, 1.0), calibration("D65", white::D65_XY, 3.0)];
         Profile::new(camera, both, Origin::default()).unwrap()
+    }
+
+    #[test]
+    fn a_light_beyond_all_others_is_far() {
+        let profile = two_lights();
+        let far = |kelvin: f64| profile.far_from(Temperature { kelvin, duv: 0.0 }.xy());
+        assert!([2500.0, 2856.0, 4000.0, 6500.0, 7500.0].iter().all(|k| far(*k).is_none()));
+        let (warm, blue) = (far(1800.0).unwrap(), far(12000.0).unwrap());
+        assert_eq!((warm.nearest.name.as_str(), blue.nearest.name.as_str()), ("A", "D65"));
+        assert!(warm.more > 1.5 && blue.more > 0.3, "{warm:?} {blue:?}");
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub mod planes;
 pub use planes::PlaneModel;
 
 pub mod calibration;
-pub use calibration::{Calibration, Light, Origin, Patch, Profile, ProfileCamera};
+pub use calibration::{Calibration, FarLight, Light, Origin, Patch, Profile, ProfileCamera};
 
 pub mod kind;
 pub use kind::Kind;

@@ -221,3 +221,29 @@ fn a_profile_of_the_user_wins_over_one_that_is_built_in() {
     let (after, err) = developed(&desk, &[]);
     assert!(err.contains("mine.toml") && !err.contains("built in") && before != after, "{err}");
 }
+
+#[test]
+fn a_profile_that_was_made_for_another_light_is_told() {
+    let desk = Desk::with_dng();
+    desk.put("my.toml", profile("Darkroot", "Simulated One"));
+    let (_, near) = developed(&desk, &["--profile", "my.toml", "--white-balance", "5200K"]);
+    assert!(!near.contains("the profile is for"), "{near}");
+    let (_, far) = developed(&desk, &["--profile", "my.toml", "--white-balance", "2700K"]);
+    assert!(far.contains("the profile is for D55") && far.contains("has 2700 K"), "{far}");
+    // Who names the light knows.
+    let (_, named) =
+        developed(&desk, &["--profile", "my.toml", "--white-balance", "2700K", "--illuminant", "A"]);
+    assert!(!named.contains("the profile is for"), "{named}");
+}
+
+#[test]
+fn the_light_of_the_colours_can_be_named() {
+    let desk = Desk::with_dng();
+    let (by_white, _) = developed(&desk, &[]);
+    let (tube, said) = developed(&desk, &["--illuminant", "FL11"]);
+    assert!(tube != by_white && said.contains("for FL11"), "{said}");
+    let refused = desk.develop(&["a.dng", "--overwrite", "--profile", "matrix", "--illuminant", "FL11"]);
+    assert!(refused.code != 0 && refused.err.contains("FL11 needs a profile"), "{}", refused.err);
+    let no_light = desk.develop(&["a.dng", "--overwrite", "--illuminant", "moon"]);
+    assert!(no_light.code != 0 && no_light.err.contains("`moon` is no illuminant"), "{}", no_light.err);
+}

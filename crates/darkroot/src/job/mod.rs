@@ -6,10 +6,12 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
+use darkroot_colour::temperature::Temperature;
 use darkroot_develop::{Bits, Cancel, Cancelled, OutputSpace, Plan, Recipe, Scale};
 use darkroot_encode::{Format, Outline};
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 use darkroot_photo::{Capture, Picture, PictureSpace};
+use darkroot_profile::Profile;
 
 use crate::files::{self, Failed, Output};
 use crate::photo::Photo;
@@ -99,7 +101,7 @@ pub fn develop_into(
     control.step(Step::Decode);
     let format = format_of(output, settings);
     let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
-    let photo = open(input, &read()?, settings)?;
+    let photo = open(input, &read()?, settings, store)?;
 
     control.step(Step::Develop);
     let mut notes = photo.capture().notes.clone();
@@ -152,13 +154,13 @@ pub fn develop_into(
 }
 
 /// The samples of a raw file, or its embedded JPEG where that is asked for.
-fn open(input: &Path, bytes: &[u8], settings: &Settings) -> Result<Photo, Error> {
+fn open(input: &Path, bytes: &[u8], settings: &Settings, store: &ProfileStore) -> Result<Photo, Error> {
     let of_raw = |source| Error::Raw { path: input.to_owned(), source };
     if settings.from_preview {
         let photo = Photo::open_preview(bytes, &settings.limits).map_err(of_raw)?;
         return photo.ok_or_else(|| Error::NoPreview { path: input.to_owned() });
     }
-    Photo::open_with(bytes, settings.decoder, &settings.limits).map_err(of_raw)
+    Photo::open_for(bytes, store, settings).map_err(of_raw)
 }
 
 /// Why no picture was written.
@@ -252,6 +254,10 @@ fn plan(
         .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();
+    let mut notes = plan.notes.clone();
+    if !camera_output && settings.light.is_none() {
+        notes.extend(profile.zip(plan.white).and_then(|(profile, white)| far_light(profile, white)));
+    }
     let report = Report {
         engine: "darkroot".to_owned(),
         colours: if camera_output {
@@ -265,10 +271,24 @@ fn plan(
         multipliers: plan.multipliers,
         demosaic: plan.demosaic.name().to_owned(),
         gain: plan.gain,
-        notes: plan.notes.clone(),
+        notes,
         ..blank_report(input, capture, plan.size(), &plan.picture_space(), recipe.output.bits)
     };
     Ok((plan, report))
+}
+
+/// What a person is told of a profile that was made for other lights. Whites that no light has are no reason.
+fn far_light(profile: &Profile, white: Temperature) -> Option<String> {
+    const STRANGE_DUV: f64 = 0.02;
+    let far = profile.far_from(white.xy()).filter(|_| white.duv.abs() < STRANGE_DUV)?;
+    Some(format!(
+        "the profile is for {} ({:.0} K) and the light of this photograph has {:.0} K: colours can be off by dE2000 {:.1} more \
+         than in that light; a shot of the chart in this light makes a profile for both",
+        far.nearest.name,
+        far.nearest.kelvin(),
+        white.kelvin,
+        far.more
+    ))
 }
 
 #[cfg(feature = "imagepipe")]

@@ -26,6 +26,7 @@ use darkroot_photo::PictureSpace;
 use darkroot_raw::{Decoder, Limits};
 
 use crate::files::Tree;
+use crate::light::LightSource;
 
 /// Which profile gives the colours.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -66,6 +67,8 @@ pub struct Settings {
     pub encode: darkroot_encode::Options,
     /// Which profile.
     pub profile: ProfileChoice,
+    /// The light that the colours are computed for, where it is not to follow from the white.
+    pub light: Option<LightSource>,
     /// Which engine.
     pub engine: Engine,
     /// Which decoder.

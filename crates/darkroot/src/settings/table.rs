@@ -9,7 +9,7 @@ use darkroot_raw::Decoder;
 
 use super::Engine;
 use super::setting::{Changes, Group, Kind, Setting, Word};
-use super::text::{NotAValue, balance, number, one_of, profile, space};
+use super::text::{NotAValue, balance, light, number, one_of, profile, space};
 
 const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
     Word { word, also: "", value, help }
@@ -86,7 +86,7 @@ fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 16] = [
+pub const SETTINGS: [Setting; 17] = [
     Setting {
         name: "format",
         alias: None,
@@ -253,6 +253,22 @@ pub const SETTINGS: [Setting; 16] = [
                built in, then the file's matrices) or `matrix`",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.profile, profile(text)),
+    },
+    Setting {
+        name: "illuminant",
+        alias: None,
+        noun: "illuminant",
+        kind: Kind::Text {
+            form: "auto, a CIE light (A, D65, FL11, LED-B3), a temperature (3000K), or a chromaticity (0.34,0.36)",
+            example: "\"FL11\" or \"3000K\"",
+        },
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "LIGHT",
+        help: "The light that the profile's colours are computed for: auto (what the white tells), a CIE light (FL11), \
+               3000K, or x,y; the white balance stays as it is",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.light, light(text)),
     },
     Setting {
         name: "from-preview",

@@ -7,6 +7,7 @@ use super::ProfileChoice;
 use super::setting::{Kind, Setting, Word};
 use super::spaces::{self, SPACES};
 use super::table::{AUTO, DECODERS, SWITCH};
+use crate::light::LightSource;
 
 /// A text that is no value. The message says what is.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -169,6 +170,15 @@ pub(super) fn profile(text: &str) -> Result<ProfileChoice, NotAValue> {
         "matrix" => Ok(ProfileChoice::Matrix),
         file => Ok(ProfileChoice::File(file.into())),
     }
+}
+
+/// A light that needs no file.
+pub(super) fn light(text: &str) -> Result<Option<LightSource>, NotAValue> {
+    if text == AUTO {
+        return Ok(None);
+    }
+    let named = LightSource::by_name(text);
+    named.map(Some).ok_or_else(|| NotAValue::plain(text, "illuminant", crate::light::known_names()))
 }
 
 /// Numbers with commas between them.
