@@ -50,6 +50,9 @@ struct Seen {
     /// Rows, scaled to 1 at white.
     rows: [Vector3; 3],
     listed: bool,
+    /// Covariance of each row by the camera's own departure from the others; nothing for listed matrices, whose families
+    /// were learnt from cameras as they are.
+    own: [Matrix3; 3],
 }
 
 /// How a family explains a matrix through each of the cameras.
@@ -67,7 +70,11 @@ impl Posterior {
     pub fn of(peers: &Peers, published: &Observation) -> Option<Self> {
         let regression = Regression::under(&published.light, &peers.surfaces)?;
         let rows = regression.scaled(&published.matrix)?;
-        let seen = Seen { regression, rows, listed: published.listed };
+        let own = [0, 1, 2].map(|k| match published.listed {
+            true => Matrix3::zeros(),
+            false => own_spread(peers, &regression, &rows[k], k),
+        });
+        let seen = Seen { regression, rows, listed: published.listed, own };
         let explained: Vec<Explained<'_>> =
             peers.families.iter().map(|f| seen.explained(peers, f)).collect::<Option<_>>()?;
         let most = explained.iter().map(|e| e.likelihood).fold(f64::NEG_INFINITY, f64::max);
@@ -145,7 +152,8 @@ impl Seen {
     fn explained<'a>(&self, peers: &Peers, family: &'a Family) -> Option<Explained<'a>> {
         let mut inverses = [Matrix3::zeros(); 3];
         let mut spread = 0.0;
-        for (inverse, covariance) in inverses.iter_mut().zip(&family.covariance) {
+        for (k, inverse) in inverses.iter_mut().enumerate() {
+            let covariance = family.covariance[k] + self.own[k];
             *inverse = covariance.try_inverse()?;
             spread += covariance.determinant().ln();
         }
@@ -199,31 +207,45 @@ impl Seen {
 
 /// Mean and covariance of one channel over weighted cameras, with the smooth departure.
 fn prior(peers: &Peers, weights: &[f64], k: usize) -> (DVector<f64>, DMatrix<f64>) {
-    let pairs = || peers.cameras.iter().map(|camera| &camera[k]).zip(weights);
-    let mut mean = DVector::zeros(SAMPLES);
-    let mut squares = DVector::zeros(SAMPLES);
-    for (channel, w) in pairs() {
-        mean.axpy(*w, channel, 1.0);
-        squares.axpy(*w, &channel.component_mul(channel), 1.0);
-    }
+    let (mean, sizes) = moments(peers, weights, k);
     let effective = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
     let unbiased = effective / (effective - 1.0).max(0.5);
     let mut off = DMatrix::zeros(SAMPLES, peers.cameras.len());
-    for (i, (channel, w)) in pairs().enumerate() {
-        off.set_column(i, &((channel - &mean) * (w * unbiased).sqrt()));
+    for (i, (camera, w)) in peers.cameras.iter().zip(weights).enumerate() {
+        off.set_column(i, &((&camera[k] - &mean) * (w * unbiased).sqrt()));
     }
-    let mut covariance = &off * off.transpose();
+    let covariance = &off * off.transpose() + departure(&sizes);
+    (mean, covariance)
+}
+
+/// Covariance of a row of the matrix that a camera's departure from the others gives.
+fn own_spread(peers: &Peers, regression: &Regression, row: &Vector3, k: usize) -> Matrix3 {
+    let even = vec![1.0 / peers.cameras.len() as f64; peers.cameras.len()];
+    let (mean, sizes) = moments(peers, &even, k);
+    let at_white = regression.white.transpose() * regression.operator;
+    let design = (regression.operator - row * at_white) / (at_white * mean)[0];
+    let spread = design * departure(&sizes) * design.transpose();
+    Matrix3::from_fn(|i, j| spread[(i, j)])
+}
+
+/// Mean and root mean square of one channel over weighted cameras.
+fn moments(peers: &Peers, weights: &[f64], k: usize) -> (DVector<f64>, DVector<f64>) {
+    let mut mean = DVector::zeros(SAMPLES);
+    let mut squares = DVector::zeros(SAMPLES);
+    for (camera, w) in peers.cameras.iter().zip(weights) {
+        mean.axpy(*w, &camera[k], 1.0);
+        squares.axpy(*w, &camera[k].component_mul(&camera[k]), 1.0);
+    }
+    (mean, squares.map(f64::sqrt))
+}
+
+/// Covariance of a camera's smooth departure from the others, whose size is this.
+fn departure(sizes: &DVector<f64>) -> DMatrix<f64> {
     let smooth: SVector<f64, SAMPLES> = SVector::from_fn(|apart, _| {
         let apart = darkroot_colour::spectrum::STEP_NM * apart as f64 / SMOOTH_NM;
         DEPARTURE * (-0.5 * apart * apart).exp()
     });
-    let sizes = squares.map(f64::sqrt);
-    for i in 0..SAMPLES {
-        for j in 0..SAMPLES {
-            covariance[(i, j)] += sizes[i] * sizes[j] * smooth[i.abs_diff(j)];
-        }
-    }
-    (mean, covariance)
+    DMatrix::from_fn(SAMPLES, SAMPLES, |i, j| sizes[i] * sizes[j] * smooth[i.abs_diff(j)])
 }
 
 /// One Gaussian with the mean and the covariance of several, weighted.

@@ -185,23 +185,38 @@ fn blocks() -> &'static [Block] {
 
 /// Determinants of the Jacobians at the points of a block.
 #[inline(always)]
-fn block_of_determinants(block: &Block, unknowns: &[f64], white: [f64; 3], out: &mut [f64]) {
-    let mut rows = [[[0.0; SIDE_BY_SIDE]; 3]; 3];
-    for (k, row) in rows.iter_mut().enumerate() {
-        row[1] = [white[k]; SIDE_BY_SIDE];
-        for (slopes, xyz) in block.iter().zip(unknowns.chunks_exact(3)) {
-            for (sums, slopes) in row.iter_mut().zip(slopes) {
-                for (sum, slope) in sums.iter_mut().zip(slopes) {
-                    *sum += xyz[k] * slope;
-                }
-            }
-        }
-    }
-    let [x, y, z] = rows;
+fn block_of_determinants(
+    block: &[[[f64; SIDE_BY_SIDE]; 3]],
+    unknowns: &[f64],
+    white: [f64; 3],
+    out: &mut [f64],
+) {
+    let [x, y, z] = [0, 1, 2].map(|k| row_of_jacobians(block, unknowns, k, white[k]));
     for (i, out) in out.iter_mut().enumerate() {
         let minor = |a: usize, b: usize| y[a][i] * z[b][i] - y[b][i] * z[a][i];
         *out = x[0][i] * minor(1, 2) - x[1][i] * minor(0, 2) + x[2][i] * minor(0, 1);
     }
+}
+
+/// Derivatives of X, Y or Z by the three channels at the points of a block. Sums are arrays of their own, which stay in the
+/// processor's registers.
+#[inline(always)]
+fn row_of_jacobians(
+    block: &[[[f64; SIDE_BY_SIDE]; 3]],
+    unknowns: &[f64],
+    k: usize,
+    white: f64,
+) -> [[f64; SIDE_BY_SIDE]; 3] {
+    let (mut red, mut green, mut blue) = ([0.0; SIDE_BY_SIDE], [white; SIDE_BY_SIDE], [0.0; SIDE_BY_SIDE]);
+    for (slopes, xyz) in block.iter().zip(unknowns.chunks_exact(3)) {
+        let v = xyz[k];
+        for i in 0..SIDE_BY_SIDE {
+            red[i] += v * slopes[0][i];
+            green[i] += v * slopes[1][i];
+            blue[i] += v * slopes[2][i];
+        }
+    }
+    [red, green, blue]
 }
 
 /// Chromaticities with the largest channel 1: 20 levels from 0.002 in equal ratios.

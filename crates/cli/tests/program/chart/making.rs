@@ -48,12 +48,18 @@ fn a_reference_may_name_its_patches_by_another_custom() {
             format!("{},{:.3},{:.3},{:.3}\n", name(i), lab.l, lab.a, lab.b)
         };
         let rows = darkroot_simulate::chart::reflectances().into_iter().enumerate().map(row);
-        format!("name,L,a,b\n{}", rows.collect::<String>())
+        let rows: Vec<String> = rows.collect();
+        (format!("name,L,a,b\n{}", rows.concat()), rows)
     };
     let cell = |across: usize, down: usize| format!("{}{}", ["A", "B", "C", "D", "E", "F"][across], down + 1);
-    desk.put("rows.csv", table(&|i| cell(i / 6, i % 6)));
-    desk.put("columns.csv", table(&|i| cell(i % 6, i / 6)));
-    desk.put("mixed.csv", table(&|i| format!("x{}", i / 2)));
+    // From the last to the first, so that only the names tell which is which.
+    let backwards = |mut rows: Vec<String>| {
+        rows.reverse();
+        format!("name,L,a,b\n{}", rows.concat())
+    };
+    desk.put("rows.csv", backwards(table(&|i| cell(i / 6, i % 6)).1));
+    desk.put("columns.csv", backwards(table(&|i| cell(i % 6, i / 6)).1));
+    desk.put("mixed.csv", table(&|i| format!("x{}", i / 2)).0);
     for (file, words) in [
         ("rows.csv", "letters for rows"),
         ("columns.csv", "letters for columns"),
