@@ -77,7 +77,7 @@ pub enum Error {
     },
     /// An illuminant was named where the colours are those of a matrix.
     #[error(
-        "the light {light} needs a profile or a camera that can be estimated; here the file's own matrix gives the colours"
+        "the illuminant {light} needs a profile or a camera that can be estimated; here the file's own matrix gives the colours"
     )]
     LightOfMatrix {
         /// The light.

@@ -242,8 +242,9 @@ fn the_light_of_the_colours_can_be_named() {
     let (by_white, _) = developed(&desk, &[]);
     let (tube, said) = developed(&desk, &["--illuminant", "FL11"]);
     assert!(tube != by_white && said.contains("for F11"), "{said}");
-    let refused = desk.develop(&["a.dng", "--overwrite", "--profile", "matrix", "--illuminant", "FL11"]);
+    let refused =
+        desk.run(&["develop", "a.dng", "--overwrite", "--profile", "matrix", "--illuminant", "FL11"]);
     assert!(refused.code != 0 && refused.err.contains("F11 needs a profile"), "{}", refused.err);
-    let no_light = desk.develop(&["a.dng", "--overwrite", "--illuminant", "moon"]);
+    let no_light = desk.run(&["develop", "a.dng", "--overwrite", "--illuminant", "moon"]);
     assert!(no_light.code != 0 && no_light.err.contains("`moon` is no illuminant"), "{}", no_light.err);
 }
