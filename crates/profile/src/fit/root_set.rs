@@ -4,7 +4,7 @@
 //! psi part small: a ridge on its coefficients, its value at saturated colours, and its slope at every colour of the
 //! set, since slopes amplify noise.
 //!
-//! Where that model folds, it is moved until it no longer does ([`super::folds`]).
+//! Where that model folds, it is moved until it no longer does (`folds.rs`).
 
 use darkroot_colour::{Matrix3, Vector3};
 use nalgebra::{DMatrix, DVector};
