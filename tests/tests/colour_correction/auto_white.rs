@@ -77,13 +77,19 @@ fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a.dot(&b) / (a.norm() * b.norm())).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
-/// Surfaces: natural ones, the odd half of Simon Fraser's without what others measured, too, and Esser's chart; each with
-/// its CIELAB chroma and hue under D50.
+/// Surfaces: the even half of the natural ones and of Simon Fraser's without those that others measured, too (the odd halves
+/// served to choose widths), and Esser's chart; each with its CIELAB chroma and hue under D50.
 fn surfaces() -> Vec<(Spectrum, f64, f64)> {
     let d50 = Illuminant::by_name("D50").unwrap().spectrum();
+    let sfu = spectra::read(&data::folder().join("sfu1995_380-780_4.csv")).unwrap().lights();
+    let own = |(name, _): &(String, Spectrum)| {
+        let name = name.to_lowercase();
+        !["munsell", "macbeth", "dupont"].iter().any(|other| name.contains(other))
+    };
     let all = data::reflectances("refl_natural218_400-700_5")
         .into_iter()
-        .chain(data::sfu_1995().into_iter().step_by(2))
+        .step_by(2)
+        .chain(sfu.into_iter().filter(own).step_by(2).map(|(_, s)| Spectrum(s.0.map(|v| v.min(1.0)))))
         .chain(data::reflectances("refl_iset_esserchart"));
     all.map(|s| {
         let lab = s.reflected_xyz(&d50).lab(d50.white());
@@ -217,8 +223,8 @@ fn the_white_is_found_in_pictures() {
     for (name, [mean, median, worst]) in names.iter().zip(figures) {
         println!("{name}: mean {mean:.2}, median {median:.2}, worst quarter {worst:.2} degrees");
     }
-    assert!(figures[0][0] < 5.5, "{figures:?}");
-    assert!(figures[1..].iter().all(|other| other[0] > 1.25 * figures[0][0] && other[2] > figures[0][2]));
+    assert!(figures[0][0] < 5.8, "{figures:?}");
+    assert!(figures[1..].iter().all(|other| other[0] > 1.4 * figures[0][0] && other[2] > figures[0][2]));
 }
 
 /// The neutral of a light gives its chromaticity through the estimated camera. That is about as near as by the matrix alone:
