@@ -16,12 +16,12 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use darkroot_develop::{Analysis, CameraMatrix, Plan, Whites};
+use darkroot_develop::{Analysis, Balance, CameraMatrix, Plan, Whites};
 use darkroot_photo::{Capture, Layout};
 use darkroot_raw::{Decoder, Limits};
 
 use crate::estimate::Estimated;
-use crate::settings::{ProfileChoice, Settings, SettingsError};
+use crate::settings::{Engine, ProfileChoice, Settings, SettingsError};
 use crate::store::{ChosenProfile, ProfileStore};
 
 /// A decoded raw file.
@@ -74,18 +74,16 @@ impl Photo {
         store: &ProfileStore,
         settings: &Settings,
     ) -> Result<Self, darkroot_raw::Error> {
+        let open = || Self::open_with(bytes, settings.decoder, &settings.limits);
+        if settings.profile != ProfileChoice::Automatic || settings.engine != Engine::Darkroot {
+            return open();
+        }
         let foreseen = || {
             let header = Self::from(darkroot_raw::header(bytes, &settings.limits).ok()?);
-            let matrix = CameraMatrix::of(&header.capture);
-            let chosen = header.profile(store, settings).ok()??;
-            let known = chosen.profile.known_camera()?;
-            let white = Whites::of(matrix.as_ref(), Some(&chosen.profile)).as_shot(&header.capture)?;
-            known.model_for(white);
-            drop(chosen);
+            header.make_ready(store, settings);
             Some(header)
         };
-        let (photo, header) =
-            rayon::join(|| Self::open_with(bytes, settings.decoder, &settings.limits), foreseen);
+        let (photo, header) = rayon::join(open, foreseen);
         let photo = photo?;
         let same = |header: &Self| {
             let (a, b) = (&header.capture, &photo.capture);
@@ -96,6 +94,19 @@ impl Photo {
             Some(header) => Self { estimated: header.estimated, ..photo },
             None => photo,
         })
+    }
+
+    /// Finds the profile and, where the white as shot is to be it, the model for that white: both are remembered.
+    fn make_ready(&self, store: &ProfileStore, settings: &Settings) {
+        let Ok(Some(chosen)) = self.any_profile(store, settings) else { return };
+        if settings.light.is_some() || settings.recipe.balance != Balance::AsShot {
+            return;
+        }
+        let matrix = CameraMatrix::of(&self.capture);
+        let white = Whites::of(matrix.as_ref(), Some(&chosen.profile)).as_shot(&self.capture);
+        if let Some((known, white)) = chosen.profile.known_camera().zip(white) {
+            known.model_for(white);
+        }
     }
 
     /// The embedded JPEG of a raw file, which the camera rendered for display; `None` when it has none. A

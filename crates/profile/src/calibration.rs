@@ -4,6 +4,7 @@ use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Xy, Xyz};
 
 use crate::camera::KnownCamera;
+use crate::camera::light::STRANGE_DUV;
 use crate::{Figures, Kind, Model};
 
 /// The camera that a profile is for.
@@ -201,11 +202,14 @@ const SMALL: f64 = 0.3;
 
 impl Profile {
     /// Whether a photograph of this white is beyond all lights of the profile by so much that it shows. `None` for whites
-    /// that are near or between them, and for profiles that are cameras, which know every light.
-    pub fn far_from(&self, white: Xy) -> Option<FarLight> {
+    /// that are near or between them or that no light has, and for profiles that are cameras, which know every light.
+    pub fn far_from(&self, white: Temperature) -> Option<FarLight> {
         let Knowledge::Calibrations(all) = &self.knowledge else { return None };
+        if white.duv.abs() >= STRANGE_DUV {
+            return None;
+        }
         let mired = |kelvin: f64| 1e6 / kelvin;
-        let off = |c: &Calibration| mired(Temperature::of(white).kelvin) - mired(c.light.kelvin());
+        let off = |c: &Calibration| mired(white.kelvin) - mired(c.light.kelvin());
         let nearest = all.iter().min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
         let between = all.iter().any(|c| off(c) > 0.0) && all.iter().any(|c| off(c) < 0.0);
         let slope = if off(nearest) > 0.0 { WARMER } else { BLUER };
@@ -249,7 +253,7 @@ mod tests {
     #[test]
     fn a_light_beyond_all_others_is_far() {
         let profile = two_lights();
-        let far = |kelvin: f64| profile.far_from(Temperature { kelvin, duv: 0.0 }.xy());
+        let far = |kelvin: f64| profile.far_from(Temperature { kelvin, duv: 0.0 });
         assert!([2500.0, 2856.0, 4000.0, 6500.0, 7500.0].iter().all(|k| far(*k).is_none()));
         let (warm, blue) = (far(1800.0).unwrap(), far(12000.0).unwrap());
         assert_eq!((warm.nearest.name.as_str(), blue.nearest.name.as_str()), ("A", "D65"));

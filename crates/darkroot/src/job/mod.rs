@@ -277,10 +277,9 @@ fn plan(
     Ok((plan, report))
 }
 
-/// What a person is told of a profile that was made for other lights. Whites that no light has are no reason.
+/// What a person is told of a profile that was made for other lights.
 fn far_light(profile: &Profile, white: Temperature) -> Option<String> {
-    const STRANGE_DUV: f64 = 0.02;
-    let far = profile.far_from(white.xy()).filter(|_| white.duv.abs() < STRANGE_DUV)?;
+    let far = profile.far_from(white)?;
     Some(format!(
         "the profile is for {} ({:.0} K) and the light of this photograph has {:.0} K: colours can be off by dE2000 {:.1} more \
          than in that light; a shot of the chart in this light makes a profile for both",

@@ -26,7 +26,7 @@ const NEAR_DAY_DUV: f64 = 0.003;
 
 /// Distance of a white from the Planckian locus up to which lights have it, and from which on none does.
 const ORDINARY_DUV: f64 = 0.012;
-const STRANGE_DUV: f64 = 0.020;
+pub(crate) const STRANGE_DUV: f64 = 0.020;
 
 /// Between these temperatures (K) a black body becomes daylight.
 const LAMP: f64 = 3500.0;

@@ -10,12 +10,10 @@ use darkroot_colour::{Spectrum, Vector3};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::posterior::{Channel, Posterior};
+use crate::fit::prior::SHARED;
 
-/// Noise of a patch that is tried, relative to its value, and the value below which noise falls no further.
+/// Noise of a patch that is tried, relative to its value.
 const NOISES: [f64; 5] = [0.002, 0.005, 0.01, 0.02, 0.03];
-const DARKEST: f64 = 0.01;
-/// Standard deviations of gain and flare that all patches share: none, and those of an ordinary shot.
-const SHARED: [[f64; 2]; 2] = [[0.0, 0.0], [0.02, 0.003]];
 
 /// The patches of a chart under one light, as the camera saw them.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +37,7 @@ impl Posterior {
         let observed = [red, green, blue];
         let mut best: Option<(f64, [DMatrix<f64>; 3])> = None;
         for (noise, shared) in NOISES.iter().flat_map(|noise| SHARED.map(|shared| (*noise, shared))) {
-            let noises = observed.each_ref().map(|o| o.noise(noise, shared));
+            let noises = observed.each_ref().map(|o| shared.covariance(noise, &o.values));
             let likelihood = observed.iter().zip(&noises).map(|(o, noise)| o.log_likelihood(noise));
             let Some(sum) = likelihood.sum::<Option<f64>>().filter(|l| l.is_finite()) else { continue };
             if best.as_ref().is_none_or(|(most, _)| sum > *most) {
@@ -87,15 +85,6 @@ impl Observed {
         let surprise = -(&design * &channel.mean);
         let values = DVector::from_fn(patches.len(), |i, _| patches[i].1[k]);
         Some(Self { gained, spread, surprise, values })
-    }
-
-    fn noise(&self, relative: f64, [gain, flare]: [f64; 2]) -> DMatrix<f64> {
-        let mut noise = &self.values * self.values.transpose() * (gain * gain);
-        noise.add_scalar_mut(flare * flare);
-        for (i, value) in self.values.iter().enumerate() {
-            noise[(i, i)] += (relative * value.max(DARKEST)).powi(2);
-        }
-        noise
     }
 
     fn factor(&self, noise: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {

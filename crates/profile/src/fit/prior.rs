@@ -24,7 +24,8 @@ const NOISES: [f64; 6] = [0.0005, 0.001, 0.003, 0.01, 0.02, 0.03];
 /// Noise is proportional to the value of a patch, but never below that of a patch of this value.
 const DARKEST: f64 = 0.01;
 /// Shared errors of all patches that are tried: none, and those of an ordinary shot.
-const SHARED: [Shared; 2] = [Shared { gain: 0.0, flare: 0.0 }, Shared { gain: 0.02, flare: 0.003 }];
+pub(crate) const SHARED: [Shared; 2] =
+    [Shared { gain: 0.0, flare: 0.0 }, Shared { gain: 0.02, flare: 0.003 }];
 /// Variance of the white, which is exact.
 const EXACT: f64 = 1e-10;
 
@@ -60,6 +61,18 @@ pub struct Shared {
     pub gain: f64,
     /// Of the flare, relative to white.
     pub flare: f64,
+}
+
+impl Shared {
+    /// Covariance of the errors of patches of these values: the shared ones, and noise of its own for each, relative.
+    pub(crate) fn covariance(self, noise: f64, values: &DVector<f64>) -> DMatrix<f64> {
+        let mut covariance = values * values.transpose() * (self.gain * self.gain);
+        covariance.add_scalar_mut(self.flare * self.flare);
+        for (i, value) in values.iter().enumerate() {
+            covariance[(i, i)] += (noise * value.max(DARKEST)).powi(2);
+        }
+        covariance
+    }
 }
 
 /// Patches of known reflectances and what the camera made of them.
@@ -172,16 +185,12 @@ impl Known {
         channel: usize,
         h: Hyperparameters,
     ) -> Option<Self> {
-        let Hyperparameters { noise, shared: Shared { gain, flare }, .. } = h;
+        let Hyperparameters { noise, shared, .. } = h;
         let count = observed.rgb.len();
         let value = |i: usize| observed.rgb.get(i).map_or(1.0, |rgb| rgb[channel]);
         let mut covariance = spread.clone();
-        for i in 0..count {
-            for j in 0..count {
-                covariance[(i, j)] += gain * gain * value(i) * value(j) + flare * flare;
-            }
-            covariance[(i, i)] += (noise * value(i).max(DARKEST)).powi(2);
-        }
+        let mut patches = covariance.view_mut((0, 0), (count, count));
+        patches += shared.covariance(noise, &DVector::from_fn(count, |i, _| value(i)));
         covariance[(count, count)] += EXACT;
         let measured = DVector::from_fn(count + 1, |i, _| value(i));
         // A hundredth of a millionth of the smallest noise, squared, against rounding.
