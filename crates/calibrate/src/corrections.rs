@@ -35,6 +35,28 @@ pub(crate) struct Patches<'a> {
     pub used: &'a [bool],
 }
 
+/// Whether something is taken out of a shot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Correct {
+    /// It stays.
+    #[default]
+    Never,
+    /// It is, where patches that had no part in finding it are nearer to what they should be without it.
+    WhereItHelps,
+    /// It is.
+    Always,
+}
+
+impl Correct {
+    fn choices(self) -> &'static [bool] {
+        match self {
+            Self::Never => &[false],
+            Self::WhereItHelps => &[false, true],
+            Self::Always => &[true],
+        }
+    }
+}
+
 /// What is to be taken out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TakeOut {
@@ -66,6 +88,42 @@ pub struct CrossValidation {
 pub(crate) struct Corrections {
     veil: [f64; 3],
     pub slopes: [Slope; 3],
+}
+
+impl TakeOut {
+    /// What helps of what may be taken out; `slope` is the one in question.
+    pub(crate) fn what_helps(
+        patches: Patches<'_>,
+        glare: Correct,
+        even_out: Correct,
+        slope: SlopeModel,
+    ) -> Self {
+        let one = |glare: bool, even_out: bool| Self {
+            glare,
+            slope: if even_out { slope } else { SlopeModel::None },
+        };
+        let mut choices = Vec::new();
+        for even_out in even_out.choices() {
+            choices.extend(glare.choices().iter().map(|glare| one(*glare, *even_out)));
+        }
+        // The plainest first: what follows must be better.
+        let mut best = choices[0];
+        if choices.len() == 1 {
+            return best;
+        }
+        let mut least = left_out_error(patches, &rounds(patches, best)).unwrap_or(f64::INFINITY);
+        for choice in choices.into_iter().skip(1) {
+            let error = left_out_error(patches, &rounds(patches, choice)).unwrap_or(f64::INFINITY);
+            if error < least {
+                (best, least) = (choice, error);
+            }
+        }
+        best
+    }
+
+    fn is_nothing(self) -> bool {
+        !self.glare && self.slope == SlopeModel::None
+    }
 }
 
 impl Corrections {
@@ -127,11 +185,13 @@ fn lights(patches: Patches<'_>, sloped: bool) -> [Option<ChannelLight>; 3] {
     })
 }
 
-/// Every patch as corrected by what others tell; none where nothing is taken out.
-pub(crate) fn rounds(patches: Patches<'_>, take_out: TakeOut) -> Vec<CrossValidation> {
-    if !take_out.glare && take_out.slope == SlopeModel::None {
-        return Vec::new();
-    }
+/// The rounds that a fit has to be judged by; none where nothing is taken out.
+pub(crate) fn rounds_of_a_fit(patches: Patches<'_>, take_out: TakeOut) -> Vec<CrossValidation> {
+    if take_out.is_nothing() { Vec::new() } else { rounds(patches, take_out) }
+}
+
+/// Every patch as corrected by what others tell.
+fn rounds(patches: Patches<'_>, take_out: TakeOut) -> Vec<CrossValidation> {
     let count = patches.rgb.len();
     let groups = count.min(MOST_ROUNDS);
     let round = |group: usize| {

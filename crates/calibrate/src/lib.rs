@@ -19,7 +19,7 @@ pub mod shot;
 pub use shot::{Chart, ShotError};
 
 pub mod corrections;
-pub use corrections::CrossValidation;
+pub use corrections::{Correct, CrossValidation};
 
 pub mod gates;
 pub use gates::{Finding, Gate, Verdict};

@@ -1,12 +1,16 @@
 //! The light that a chart stood in: its name, its chromaticity and, where it is known, its spectrum.
 
 use darkroot_colour::illuminant::{ILLUMINANTS, Illuminant};
+use darkroot_colour::spectrum::SAMPLES;
 use darkroot_colour::temperature::{Temperature, planckian_xy};
 use darkroot_colour::{Spectrum, Xy, white};
 use darkroot_profile::Light;
 
 /// Temperature from which a light given in kelvin is taken for daylight, not for a black body.
 const DAYLIGHT_FROM: f64 = 4000.0;
+
+/// What the largest power of a spectrum is written as.
+const LARGEST_POWER: f64 = 10_000.0;
 
 /// A light.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,16 +23,37 @@ pub struct LightSource {
 
 impl LightSource {
     /// The light that a text names: a CIE illuminant ("D65", "A", "FL11", "LED-B3"), a temperature ("5500K": daylight
-    /// from 4000 K on, black body below) or a chromaticity ("0.34,0.36"). `None` where it is none of these.
+    /// from 4000 K on, black body below), a chromaticity ("0.34,0.36") or a spectrum ([`Self::text`]). `None` where it is none
+    /// of these.
     pub fn by_name(text: &str) -> Option<Self> {
         if let Some(known) = Illuminant::by_name(text) {
             return Some(Self::of_spectrum(known.name, known.spectrum()));
+        }
+        if let Some((name, powers)) = text.rsplit_once('@') {
+            return Self::of_powers(name, powers);
         }
         if let Some(kelvin) = text.strip_suffix(['K', 'k']).and_then(|n| n.trim().parse::<f64>().ok()) {
             return Self::of_kelvin(kelvin);
         }
         let (x, y) = text.split_once(',')?;
         Self::of_chromaticity(x.trim().parse().ok()?, y.trim().parse().ok()?)
+    }
+
+    /// A text that [`Self::by_name`] reads: the name, `@`, and relative powers at 380, 385 ... 780 nm with commas between
+    /// them, as whole numbers of which the largest is 10000. `None` where the spectrum is not known.
+    pub fn text(&self) -> Option<String> {
+        let powers = &self.spectrum.as_ref()?.0;
+        let largest = powers.iter().copied().fold(0.0, f64::max);
+        let whole = powers.iter().map(|v| format!("{:.0}", LARGEST_POWER * v / largest));
+        Some(format!("{}@{}", self.light.name, whole.collect::<Vec<_>>().join(",")))
+    }
+
+    fn of_powers(name: &str, powers: &str) -> Option<Self> {
+        let powers: Vec<f64> = powers.split(',').map(|v| v.trim().parse().ok()).collect::<Option<_>>()?;
+        let powers: [f64; SAMPLES] = powers.try_into().ok()?;
+        let sound = powers.iter().all(|v| (0.0..=LARGEST_POWER).contains(v));
+        let spectrum = Spectrum(powers);
+        (sound && spectrum.stimulus_xyz().y > 0.0).then(|| Self::of_spectrum(name, spectrum))
     }
 
     /// A light whose spectrum is known.
@@ -97,8 +122,23 @@ mod tests {
     }
 
     #[test]
+    fn a_spectrum_comes_back_from_its_text() {
+        let lamp = LightSource {
+            light: Light { name: "desk@home".to_owned(), xy: white::D50_XY },
+            ..LightSource::assumed()
+        };
+        let back = LightSource::by_name(&lamp.text().unwrap()).unwrap();
+        assert_eq!(back.light.name, "desk@home");
+        assert!((back.light.kelvin() - 5003.0).abs() < 5.0, "{}", back.light.kelvin());
+        let again = back.text().unwrap();
+        assert_eq!(Some(again), lamp.text());
+    }
+
+    #[test]
     fn what_is_no_light_is_not_found() {
-        for text in ["moon", "90K", "0.9,0.9", "no/such.csv", "nanK"] {
+        let dark = format!("lamp@{}", vec!["0"; 81].join(","));
+        let bright = format!("lamp@{}", vec!["10001"; 81].join(","));
+        for text in [dark.as_str(), bright.as_str(), "lamp@1,2,3", "90K", "0.9,0.9", "no/such.csv", "nanK"] {
             assert_eq!(LightSource::by_name(text), None, "{text}");
         }
     }

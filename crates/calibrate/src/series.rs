@@ -80,15 +80,18 @@ pub fn combined(shots: &[&[MeasuredPatch]]) -> Vec<MeasuredPatch> {
     (0..first.len()).map(one).collect()
 }
 
-/// The same for what each shot is without the help of some patches.
+/// The same for what each shot is without the help of some patches. A shot that was not corrected is the same in every
+/// round.
 pub fn combined_cross_validation(shots: &[Member<'_>]) -> Vec<CrossValidation> {
-    let count = shots.iter().map(|s| s.cross_validation.len()).min().unwrap_or(0);
-    let round = |k: usize| {
+    let corrected = shots.iter().max_by_key(|s| s.cross_validation.len());
+    let rounds = corrected.map_or(&[][..], |s| s.cross_validation);
+    let round = |(k, round): (usize, &CrossValidation)| {
         let corrected: Vec<Vec<MeasuredPatch>> = shots
             .iter()
             .map(|shot| {
                 let mut patches = shot.patches.to_vec();
-                for (patch, rgb) in patches.iter_mut().zip(&shot.cross_validation[k].rgb) {
+                let rgb = shot.cross_validation.get(k).into_iter().flat_map(|round| &round.rgb);
+                for (patch, rgb) in patches.iter_mut().zip(rgb) {
                     patch.rgb = *rgb;
                 }
                 patches
@@ -96,9 +99,9 @@ pub fn combined_cross_validation(shots: &[Member<'_>]) -> Vec<CrossValidation> {
             .collect();
         let all: Vec<&[MeasuredPatch]> = corrected.iter().map(Vec::as_slice).collect();
         let rgb = combined(&all).iter().map(|p| p.rgb).collect();
-        CrossValidation { left_out: shots[0].cross_validation[k].left_out.clone(), rgb }
+        CrossValidation { left_out: round.left_out.clone(), rgb }
     };
-    (0..count).map(round).collect()
+    rounds.iter().enumerate().map(round).collect()
 }
 
 /// Light of one set of patches over that of another: the median over patches that both have.

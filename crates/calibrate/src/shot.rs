@@ -6,7 +6,9 @@ use darkroot_colour::difference::de2000;
 use darkroot_colour::{Xyz, white};
 use darkroot_photo::Mosaic;
 
-use crate::corrections::{self, ColourChange, Corrections, CrossValidation, Patches, SlopeModel, TakeOut};
+use crate::corrections::{
+    self, ColourChange, Correct, Corrections, CrossValidation, Patches, SlopeModel, TakeOut,
+};
 use crate::gates::{self, Corrected, Gate, by_channel};
 use crate::patch::{MeasuredPatch, is_clipped};
 
@@ -173,10 +175,10 @@ pub fn measure(
 /// What is taken out of a shot, and what is left out of it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Treatment<'a> {
-    /// Take the slope of light over the chart out, as far as the patches show it.
-    pub even_out: bool,
-    /// Take the glare out that the patches show.
-    pub correct_glare: bool,
+    /// Whether the slope of light over the chart is taken out, as far as the patches show it.
+    pub even_out: Correct,
+    /// Whether the glare is taken out that the patches show.
+    pub correct_glare: Correct,
     /// Names of patches to leave out.
     pub exclude: &'a [String],
 }
@@ -194,7 +196,9 @@ pub struct CorrectedShot {
     pub colour_change: ColourChange,
     /// Rounds of cross-validation; empty where nothing was corrected by the patches themselves.
     pub cross_validation: Vec<CrossValidation>,
-    /// What was taken out, in words.
+    /// What was taken out.
+    pub corrected: Corrected,
+    /// The same in words.
     pub notes: Vec<String>,
 }
 
@@ -222,12 +226,8 @@ pub fn correct(
     let slope = Slope::of(&places, &luminance, &targets).unwrap_or_default();
     let glare = corrections::glare(patches);
     let colour_change = ColourChange::of(patches);
-    let slope_model = match (treatment.even_out, colour_change.is_certain()) {
-        (false, _) => SlopeModel::None,
-        (true, true) => SlopeModel::PerChannel,
-        (true, false) => SlopeModel::Common,
-    };
-    let take_out = TakeOut { glare: treatment.correct_glare, slope: slope_model };
+    let slope_model = if colour_change.is_certain() { SlopeModel::PerChannel } else { SlopeModel::Common };
+    let take_out = TakeOut::what_helps(patches, treatment.correct_glare, treatment.even_out, slope_model);
     let correction = Corrections::of(patches, take_out);
     let rgb = correction.applied(patches);
     let reason = |i: usize| {
@@ -254,7 +254,8 @@ pub fn correct(
         slope,
         glare,
         colour_change,
-        cross_validation: corrections::rounds(patches, take_out),
+        cross_validation: corrections::rounds_of_a_fit(patches, take_out),
+        corrected: Corrected { unevenness: take_out.slope != SlopeModel::None, glare: take_out.glare },
         notes: notes(take_out, &correction, glare, colour_change),
     })
 }

@@ -27,9 +27,24 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// The layers of this run; what the options say is among them.
-    pub(crate) fn layers(&self) -> Result<Layers, RecipeError> {
-        let given = self.given.0.iter().map(|(key, text)| (*key, text.clone()));
-        Layers::new(self.recipe.as_deref(), Layer::flags(given)?, !self.no_recipes)
+    pub(crate) fn layers(&self) -> Result<Layers> {
+        Ok(self.layers_with(self.flags()?)?)
+    }
+
+    /// The same with what the options say already read.
+    pub(crate) fn layers_with(&self, flags: Layer) -> Result<Layers, RecipeError> {
+        Layers::new(self.recipe.as_deref(), flags, !self.no_recipes)
+    }
+
+    /// What the options say. A lamp's spectrum goes along in the text: workers and journals need no file then.
+    pub(crate) fn flags(&self) -> Result<Layer> {
+        let of_lamp = |key: Key, text: &str| match key.name() {
+            "illuminant" => darkroot::light::without_file(text),
+            _ => Ok(text.to_owned()),
+        };
+        let given = self.given.0.iter().map(|(key, text)| Ok((*key, of_lamp(*key, text)?)));
+        let given = given.collect::<Result<Vec<_>, darkroot::Error>>()?;
+        Ok(Layer::flags(given)?)
     }
 
     /// Whether white balance or profile were asked for.

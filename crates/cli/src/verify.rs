@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
+use darkroot::shot::Correct;
 use darkroot::store::Found;
 use darkroot::verify::{
     Limits, LogLine, Outcome as Judged, PRESETS, Verification, append, history, read_log, verify,
@@ -87,7 +88,7 @@ impl Verify {
             bail!("give a profile and a shot of a chart");
         };
         let Found { profile, place } = store().choose(profile)?;
-        let request = self.shot.request(&[], &[], None, "")?;
+        let request = self.shot.request(&[], &[], None, "", Correct::Never)?;
         let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
         let judge = || verify(&profile, file, light.as_ref(), &request, &Settings::default());
         let found = match self.shot.deadline.over(file, 0, |_| (), judge) {

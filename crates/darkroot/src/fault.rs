@@ -114,6 +114,18 @@ pub enum ChartError {
     /// The greys have no light in a channel.
     #[error("its greys have no light in a channel")]
     DarkGreys,
+    /// Patches to which no model can be fitted.
+    #[error("cannot be fitted to: {0}")]
+    Fit(#[from] darkroot_profile::fit::FitError),
+    /// A table without the patch that is to be left out.
+    #[error("has no patch {} to exclude", quoted(name))]
+    NoPatch {
+        /// As it was given.
+        name: String,
+    },
+    /// Colours that cannot have been measured in a light.
+    #[error("has no XYZ: colours that were measured in the light of the shot are XYZ relative to its white")]
+    NotXyz,
     /// A file that is no log of verified shots.
     #[error("is no log of verified shots")]
     NoLog,

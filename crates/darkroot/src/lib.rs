@@ -50,6 +50,9 @@ pub use estimate::{Estimated, estimate, estimate_named};
 pub mod from_spectra;
 pub use from_spectra::{FromSpectra, from_spectra};
 
+pub mod from_table;
+pub use from_table::{FromTable, TableProfile, from_table};
+
 pub mod evaluate;
 
 pub mod export;

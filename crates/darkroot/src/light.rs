@@ -17,6 +17,20 @@ pub fn find(text: &str) -> Result<LightSource, Error> {
     LightSource::by_name(text).map_or_else(|| of_file(text), Ok)
 }
 
+/// The text with the spectrum in place of the file that it names, so that whoever reads it needs no file; any other text
+/// as it is.
+///
+/// # Errors
+/// The file cannot be used.
+pub fn without_file(text: &str) -> Result<String, Error> {
+    let path = Path::new(text.split_once(':').map_or(text, |(path, _)| path));
+    if LightSource::by_name(text).is_some() || !is_file_name(path) {
+        return Ok(text.to_owned());
+    }
+    let light = of_file(text)?;
+    Ok(light.text().unwrap_or_else(|| text.to_owned()))
+}
+
 /// What a person can name, in words.
 pub(crate) fn known() -> String {
     format!("{}; or a CSV file of spectra (lamp.csv, lamps.csv:NAME)", known_names())
@@ -127,6 +141,11 @@ mod tests {
         let named = find(&format!("{text}:two")).unwrap();
         assert_eq!(named.light.name, "two");
         assert!((named.light.xy.x - 1.0 / 3.0).abs() < 1e-4);
+        let inside = without_file(&format!("{text}:two")).unwrap();
+        assert!(inside.starts_with("two@10000,10000,"), "{inside}");
+        assert_eq!(LightSource::by_name(&inside).unwrap().light.name, "two");
+        assert_eq!(without_file("FL11").unwrap(), "FL11");
+        assert_eq!(without_file("moon").unwrap(), "moon");
         assert!(find(&text).unwrap_err().to_string().contains("name one"));
         assert!(find(&format!("{text}:three")).unwrap_err().to_string().contains("one, two"));
     }

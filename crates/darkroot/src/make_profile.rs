@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use darkroot_calibrate::calibrate;
 use darkroot_calibrate::fit::Choice;
 use darkroot_calibrate::gates::{self, Departure};
 use darkroot_calibrate::series::{self, Member};
-use darkroot_calibrate::{Calibrated, calibrate};
 use darkroot_chart::{ChartLayout, Reference};
 use darkroot_photo::Camera;
 use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
@@ -15,6 +15,8 @@ use crate::light::LightSource;
 use crate::shot::{Gate, Shot, ShotOptions, View, common_name, open, refuse};
 use crate::shown;
 use crate::{Error, Settings};
+
+pub use darkroot_calibrate::{Calibrated, Compared, JudgedPatch};
 
 /// Red or blue against green, as a natural logarithm, from which the camera's white is another than the light's.
 const OTHER_WHITE: f64 = 0.15;

@@ -6,7 +6,7 @@
 use std::io::Write;
 
 use darkroot_photo::Metadata;
-use ravif::{Encoder, Img, RGB8};
+use ravif::{Encoder, Img, RGBA8};
 
 use crate::format::Frame;
 use crate::output::Buffered;
@@ -21,7 +21,10 @@ pub(crate) fn write(
     metadata: &Metadata,
     out: &mut Buffered<'_, '_>,
 ) -> Result<(), Error> {
-    let pixels: Vec<RGB8> = frame.bytes().chunks_exact(3).map(|p| RGB8::new(p[0], p[1], p[2])).collect();
+    // With opacity, which is dropped again: `encode_rgb` is compiled anew, with all of the encoder, in every crate that calls
+    // it, which takes minutes.
+    let pixels: Vec<RGBA8> =
+        frame.bytes().chunks_exact(3).map(|p| RGBA8::new(p[0], p[1], p[2], 255)).collect();
     let mut encoder = Encoder::new()
         .with_quality(f32::from(options.quality))
         .with_speed(options.avif_speed)
@@ -31,7 +34,7 @@ pub(crate) fn write(
         encoder = encoder.with_exif(block);
     }
     let encoded = encoder
-        .encode_rgb(Img::new(&pixels[..], frame.width as usize, frame.height as usize))
+        .encode_rgba(Img::new(&pixels[..], frame.width as usize, frame.height as usize))
         .map_err(|e| Error::encoder(Format::Avif)(e.into()))?;
     out.write_all(&encoded.avif_file).map_err(Error::Io)
 }

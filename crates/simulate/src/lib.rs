@@ -25,6 +25,7 @@ pub use expose::Exposure;
 pub mod dng;
 pub mod nef;
 
+pub mod levels;
 pub mod samples;
 
 mod bits;

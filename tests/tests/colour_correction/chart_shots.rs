@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use darkroot::light::LightSource;
-use darkroot::shot::Verdict;
+use darkroot::shot::{Correct, Verdict};
 use darkroot::{ChartRequest, MadeProfile, Settings, ShotOptions, make_profile};
 use darkroot_chart::{Reference, ReferenceColour};
 use darkroot_colour::measured::Measured;
@@ -122,7 +122,7 @@ fn shoot<T>(
         reference_sha256: String::new(),
         options: ShotOptions {
             flat: Some(flat),
-            correct_glare: true,
+            correct_glare: Correct::Always,
             accept: true,
             ..ShotOptions::default()
         },
@@ -335,15 +335,15 @@ fn outcome(camera: &str, mixed: Mixed, options: ShotOptions) -> Outcome {
 const CAMERAS: [&str; 3] = ["camspec_nikon_d90", "camspec_canon_600d", "camspec_pentax_k5"];
 
 fn even_out() -> ShotOptions {
-    ShotOptions { even_out: true, ..ShotOptions::default() }
+    ShotOptions { even_out: Correct::Always, ..ShotOptions::default() }
 }
 
 fn correct_glare() -> ShotOptions {
-    ShotOptions { correct_glare: true, ..ShotOptions::default() }
+    ShotOptions { correct_glare: Correct::Always, ..ShotOptions::default() }
 }
 
 fn both() -> ShotOptions {
-    ShotOptions { even_out: true, correct_glare: true, ..ShotOptions::default() }
+    ShotOptions { even_out: Correct::Always, correct_glare: Correct::Always, ..ShotOptions::default() }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! CGATS.17 text files (ISO 28178) and what Argyll makes of them.
 
 use super::table::Table;
-use super::{NotAReference, Reference, ReferenceError};
+use super::{NotAReference, ReferenceError};
 
 /// Reads the first table of the file.
-pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
+pub(super) fn parse(text: &str) -> Result<Table, ReferenceError> {
     let mut columns: Vec<String> = Vec::new();
     let mut cells: Vec<String> = Vec::new();
     let mut state = State::Header;
@@ -33,7 +33,7 @@ pub(super) fn parse(text: &str) -> Result<Reference, ReferenceError> {
         return Err(NotAReference::Rows { values: cells.len(), columns: columns.len() }.into());
     }
     let rows = cells.chunks(columns.len()).map(<[String]>::to_vec).collect();
-    Table { columns, rows }.reference()
+    Ok(Table { columns, rows })
 }
 
 #[derive(Clone, Copy)]
@@ -67,8 +67,7 @@ fn words(line: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ReferenceColour;
-    use super::*;
+    use super::super::{Reference, ReferenceColour};
 
     const FILE: &str = "CGATS.17\nORIGINATOR \"a test\"\nNUMBER_OF_FIELDS 5\nBEGIN_DATA_FORMAT\nSAMPLE_ID \
                         SAMPLE_NAME LAB_L LAB_A\nLAB_B\nEND_DATA_FORMAT\nNUMBER_OF_SETS 2\nBEGIN_DATA\n1 \"dark \

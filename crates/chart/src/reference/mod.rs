@@ -2,9 +2,11 @@
 
 mod cgats;
 mod cxf;
+mod photographed;
 mod sequence;
 mod table;
 
+pub use photographed::{PhotographedPatch, photographed};
 pub use sequence::Sequence;
 
 use darkroot_colour::measured::{Measured, SpectrumError};
@@ -41,6 +43,9 @@ pub enum ReferenceError {
         .0.join(", ")
     )]
     Columns(Vec<String>),
+    /// A table without what a camera made of the patches.
+    #[error("has no camera RGB: its columns are {}; it needs RGB_R, RGB_G, RGB_B", .0.join(", "))]
+    NoRgb(Vec<String>),
     /// CxF without colours.
     #[error("has no colours: it needs an Object with a ReflectanceSpectrum, ColorCIEXYZ or ColorCIELab")]
     NoColours,
@@ -198,10 +203,7 @@ impl Reference {
         if text.trim_start().starts_with('<') {
             return cxf::parse(text);
         }
-        if text.contains("BEGIN_DATA_FORMAT") || text.contains("BEGIN_DATA") {
-            return cgats::parse(text);
-        }
-        table::parse_csv(text)
+        parse_table(text)?.reference()
     }
 
     /// The colours of the patches of a chart, found by name: "A1" is "A01" and "a1", "white 9.5 (.05 D)" is "white".
@@ -221,6 +223,12 @@ impl Reference {
         };
         names.iter().map(|name| find(name).ok_or_else(|| missing(name))).collect()
     }
+}
+
+/// A table of any kind: CGATS or CSV.
+fn parse_table(text: &str) -> Result<table::Table, ReferenceError> {
+    let is_cgats = text.contains("BEGIN_DATA_FORMAT") || text.contains("BEGIN_DATA");
+    if is_cgats { cgats::parse(text) } else { table::parse_csv(text) }
 }
 
 /// A key without what stands in brackets, and, for white and black, without their number.

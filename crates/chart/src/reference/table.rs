@@ -11,7 +11,7 @@ pub(super) struct Table {
 }
 
 /// CSV: `,`, `;` or tabs; the first row names the columns.
-pub(super) fn parse_csv(text: &str) -> Result<Reference, ReferenceError> {
+pub(super) fn parse_csv(text: &str) -> Result<Table, ReferenceError> {
     let first = text.lines().find(|l| !l.trim().is_empty() && !l.starts_with('#')).unwrap_or_default();
     let delimiter = [b'\t', b';', b','].into_iter().find(|d| first.contains(char::from(*d)));
     let Some(delimiter) = delimiter else {
@@ -32,7 +32,7 @@ pub(super) fn parse_csv(text: &str) -> Result<Reference, ReferenceError> {
         return Err(NotAReference::NoPatches.into());
     }
     let columns = rows.remove(0);
-    Table { columns, rows }.reference()
+    Ok(Table { columns, rows })
 }
 
 /// Which columns hold what.
@@ -45,25 +45,11 @@ enum Columns {
 impl Table {
     /// The patches: spectra where there are some, else XYZ, else Lab.
     pub(super) fn reference(&self) -> Result<Reference, ReferenceError> {
-        let name = self.name_column();
-        let columns = self.colour_columns(name)?;
-        let cells = |row: &Vec<String>, index: usize| {
-            let patch = patch_name(row, name, index);
-            let number = |c: usize| {
-                let cell = row.get(c).map_or("", String::as_str);
-                let value: Option<f64> = cell.replace(',', ".").parse().ok().filter(|v: &f64| v.is_finite());
-                value.ok_or_else(|| ReferenceError::Number { patch: patch.clone(), cell: cell.to_owned() })
-            };
-            match &columns {
-                Columns::Spectra(places) => {
-                    places.iter().map(|(_, c)| number(*c)).collect::<Result<Vec<_>, _>>()
-                }
-                Columns::Xyz(places) | Columns::Lab(places) => places.iter().map(|c| number(*c)).collect(),
-            }
-            .map(|values| (patch, values))
-        };
-        let values =
-            self.rows.iter().enumerate().map(|(i, row)| cells(row, i)).collect::<Result<Vec<_>, _>>()?;
+        let columns = self.colour_columns(self.name_column())?;
+        let values = match &columns {
+            Columns::Spectra(places) => self.numbers(&places.iter().map(|(_, c)| *c).collect::<Vec<_>>()),
+            Columns::Xyz(places) | Columns::Lab(places) => self.numbers(places),
+        }?;
         let largest = values.iter().flat_map(|(_, v)| v.iter().copied()).fold(0.0, f64::max);
         // Files have either 1 or 100 for white.
         let scale = if largest > 2.0 { 0.01 } else { 1.0 };
@@ -88,6 +74,42 @@ impl Table {
         Ok(Reference { patches })
     }
 
+    /// Red, green and blue of each row, as they stand there.
+    pub(super) fn rgb(&self) -> Result<Vec<[f64; 3]>, ReferenceError> {
+        let columns = self.triple([["RGB_R", "R", "RED"], ["RGB_G", "G", "GREEN"], ["RGB_B", "B", "BLUE"]]);
+        let columns = columns.ok_or_else(|| ReferenceError::NoRgb(self.columns.clone()))?;
+        Ok(self.numbers(&columns)?.into_iter().map(|(_, v)| [v[0], v[1], v[2]]).collect())
+    }
+
+    /// Name and numbers of each row.
+    fn numbers(&self, columns: &[usize]) -> Result<Vec<(String, Vec<f64>)>, ReferenceError> {
+        let name = self.name_column();
+        let of_row = |(index, row): (usize, &Vec<String>)| {
+            let patch = patch_name(row, name, index);
+            let number = |c: &usize| {
+                let cell = row.get(*c).map_or("", String::as_str);
+                let value: Option<f64> = cell.replace(',', ".").parse().ok().filter(|v: &f64| v.is_finite());
+                value.ok_or_else(|| ReferenceError::Number { patch: patch.clone(), cell: cell.to_owned() })
+            };
+            let values = columns.iter().map(number).collect::<Result<Vec<_>, _>>()?;
+            Ok((patch, values))
+        };
+        self.rows.iter().enumerate().map(of_row).collect()
+    }
+
+    /// The places of three columns, each by one of its names.
+    fn triple(&self, names: [[&str; 3]; 3]) -> Option<[usize; 3]> {
+        // As it is written first: `b` is not blue where there is a `B`.
+        let place = |options: [&str; 3]| {
+            let find = |is: fn(&str, &str) -> bool| {
+                self.columns.iter().position(|c| options.iter().any(|o| is(c, o)))
+            };
+            find(|c, o| c == o).or_else(|| find(str::eq_ignore_ascii_case))
+        };
+        let [a, b, c] = names.map(place);
+        Some([a?, b?, c?])
+    }
+
     fn name_column(&self) -> Option<usize> {
         const NAMES: [&str; 7] = ["SAMPLE_NAME", "SAMPLE_LOC", "SAMPLE_ID", "NAME", "PATCH", "ID", "SAMPLE"];
         let is = |wanted: &str| self.columns.iter().position(|c| c.eq_ignore_ascii_case(wanted));
@@ -106,19 +128,12 @@ impl Table {
         if spectra.len() >= 10 {
             return Ok(Columns::Spectra(spectra));
         }
-        let triple = |names: [[&str; 3]; 3]| {
-            let place = |options: [&str; 3]| {
-                self.columns.iter().position(|c| options.iter().any(|o| c.eq_ignore_ascii_case(o)))
-            };
-            let [a, b, c] = names.map(place);
-            Some([a?, b?, c?])
-        };
-        if let Some(places) =
-            triple([["XYZ_X", "X", "CIE_X"], ["XYZ_Y", "Y", "CIE_Y"], ["XYZ_Z", "Z", "CIE_Z"]])
-        {
+        let xyz = [["XYZ_X", "X", "CIE_X"], ["XYZ_Y", "Y", "CIE_Y"], ["XYZ_Z", "Z", "CIE_Z"]];
+        if let Some(places) = self.triple(xyz) {
             return Ok(Columns::Xyz(places));
         }
-        if let Some(places) = triple([["LAB_L", "L", "L*"], ["LAB_A", "A", "A*"], ["LAB_B", "B", "B*"]]) {
+        let lab = [["LAB_L", "L", "L*"], ["LAB_A", "a", "a*"], ["LAB_B", "b", "b*"]];
+        if let Some(places) = self.triple(lab) {
             return Ok(Columns::Lab(places));
         }
         Err(ReferenceError::Columns(self.columns.clone()))
@@ -166,6 +181,7 @@ mod tests {
 
     #[test]
     fn lab_xyz_and_spectra_are_read_from_csv() {
+        let parse_csv = |text: &str| parse_csv(text).unwrap().reference();
         let lab = parse_csv("name,L,a,b\nA1,50,10,-20\nA2,90,0,1\n").unwrap();
         assert_eq!(lab.patches[0].0, "A1");
         assert_eq!(lab.patches[0].1, ReferenceColour::Lab(Lab { l: 50.0, a: 10.0, b: -20.0 }));
@@ -189,7 +205,7 @@ mod tests {
             ("name,L,a,b\n", "no patches"),
             ("hello", "no columns"),
         ] {
-            let message = parse_csv(text).unwrap_err().to_string();
+            let message = parse_csv(text).and_then(|table| table.reference()).unwrap_err().to_string();
             assert!(message.contains(words), "{text}: {message}");
         }
     }

@@ -7,10 +7,11 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::Args;
 use darkroot::evaluate::from_matrix::{Judgement, Method, Request, evaluate};
-use darkroot::evaluate::{ReflectanceSet, published, read_set};
+use darkroot::evaluate::{ReflectanceSet, published};
 use darkroot::light::LightSource;
-use darkroot::{shown, spectra};
+use darkroot::shown;
 
+use super::Knowledge;
 use crate::Outcome;
 
 /// How much worse than its matrix an estimate may be before it is named, mean dE2000.
@@ -19,34 +20,8 @@ const WORSE: f64 = 0.1;
 #[derive(Debug, Args)]
 pub(super) struct FromMatrix {
     /// CSV of published matrices: make, model, D65_00 ... D65_22; judges cameras estimated from them
-    #[arg(long, value_name = "FILE", requires = "prior", requires = "reflectances")]
+    #[arg(long, value_name = "FILE", requires_all = ["prior", "reflectances"])]
     from_matrix: Option<PathBuf>,
-
-    /// CSV of sensitivities that the estimate may rest on; several, each left out where it or a twin is judged
-    #[arg(long, value_name = "FILE", num_args = 1.., requires = "from_matrix")]
-    prior: Vec<PathBuf>,
-
-    /// CSV of reflectances that the estimate may rest on; those that are judged on are left out
-    #[arg(long, value_name = "FILE", num_args = 1.., requires = "from_matrix")]
-    reflectances: Vec<PathBuf>,
-
-    /// A chart, NAME=FILE.csv: for comparison, a matrix is fitted to its patches under each light
-    #[arg(long, value_name = "NAME=FILE", requires = "from_matrix")]
-    chart: Option<String>,
-
-    /// Wavelengths that count, nm: many sensitivities were measured over less than the whole range
-    #[arg(long, value_name = "NM-NM", default_value = "400-700", value_parser = range, requires = "from_matrix")]
-    between: (f64, f64),
-
-    /// A line for each camera
-    #[arg(long, requires = "from_matrix")]
-    each: bool,
-}
-
-fn range(text: &str) -> Result<(f64, f64), String> {
-    let ends = text.split_once('-').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
-    ends.filter(|(a, b)| *a >= 380.0 && *a <= 450.0 && *b >= 650.0 && *b <= 780.0)
-        .ok_or_else(|| format!("`{text}` is no range of wavelengths like 400-700 that holds 450 to 650 nm"))
 }
 
 impl FromMatrix {
@@ -56,38 +31,32 @@ impl FromMatrix {
 
     pub(super) fn run(
         self,
+        knowledge: Knowledge,
         cameras: Vec<PathBuf>,
         judged: Vec<ReflectanceSet>,
         lights: Vec<LightSource>,
     ) -> Result<Outcome> {
-        let mut surfaces = Vec::new();
-        for path in &self.reflectances {
-            surfaces.extend(spectra::read(path)?.reflectances());
-        }
         let names: Vec<String> = judged.iter().map(|set| set.name.clone()).collect();
         let outcome = evaluate(&Request {
             published: published::read(&self.from_matrix.unwrap_or_default())?,
-            prior: self.prior,
+            surfaces: knowledge.surfaces()?,
+            chart: knowledge.chart()?,
+            prior: knowledge.prior,
             cameras,
-            surfaces,
             judged,
-            chart: self.chart.as_deref().map(read_set).transpose()?,
             lights: lights.clone(),
-            between: self.between,
+            between: knowledge.between,
         })?;
         for path in &outcome.without_matrix {
             crate::say(format_args!("left out, no published matrix: {}", shown(path)));
         }
-        if outcome.surfaces_left_out > 0 {
-            let count = outcome.surfaces_left_out;
-            crate::say(format_args!("left out of the prior because they are judged on: {count} surfaces"));
-        }
+        super::say_left_out(outcome.surfaces_left_out);
         let mut out = crate::out::lines();
         for light in &lights {
             let light = light.light.name.as_str();
             let results: Vec<&Judgement> = outcome.results.iter().filter(|r| r.light == light).collect();
             write_light(&mut out, light, &results, &names)?;
-            if self.each {
+            if knowledge.each {
                 for result in results {
                     let figures: Vec<String> =
                         result.errors.iter().map(|(_, e)| format!("{:.2}", e.mean)).collect();

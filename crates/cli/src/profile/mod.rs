@@ -8,9 +8,12 @@ mod lights;
 mod lint;
 mod list;
 mod make;
+mod shot_args;
 mod show;
+mod table;
+mod told;
 
-pub(crate) use make::ShotArgs;
+pub(crate) use shot_args::ShotArgs;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
@@ -20,7 +23,8 @@ use crate::{Common, Outcome};
 
 /// Make, judge and use camera profiles
 ///
-/// With shots of a colour chart it makes a profile: darkroot profile chart.NEF --chart classic24 --light D50
+/// With shots of a colour chart it makes a profile: darkroot profile chart.NEF --chart classic24 --light D50.
+/// With tables of patches that were measured elsewhere, too: darkroot profile chart.ti3 --light D50 --make Nikon --camera-model D700
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct Profile {

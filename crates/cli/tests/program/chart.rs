@@ -9,6 +9,7 @@ mod checks;
 mod finding;
 mod making;
 mod series;
+mod tables;
 mod verifying;
 
 const SIZE: Size = Size { width: 488, height: 328 };

@@ -8,6 +8,7 @@ mod broken;
 mod chart;
 mod embedded;
 mod engines;
+mod evaluate;
 mod export;
 mod formats;
 mod help;

@@ -1,4 +1,4 @@
-//! `darkroot profile` and `darkroot evaluate`, on the simulated camera and its chart.
+//! `darkroot profile`, on the simulated camera and its chart.
 
 use std::io::Write as _;
 use std::process::Stdio;
@@ -8,7 +8,7 @@ use darkroot_colour::Spectrum;
 use super::*;
 
 /// Spectra as a CSV file has them.
-fn csv<'a>(spectra: impl IntoIterator<Item = (&'a str, &'a Spectrum)>) -> String {
+pub(super) fn csv<'a>(spectra: impl IntoIterator<Item = (&'a str, &'a Spectrum)>) -> String {
     let nm: Vec<String> = (0..81).map(|i| Spectrum::wavelength(i).to_string()).collect();
     let mut text = format!("name,{}\n", nm.join(","));
     for (name, spectrum) in spectra {
@@ -19,7 +19,7 @@ fn csv<'a>(spectra: impl IntoIterator<Item = (&'a str, &'a Spectrum)>) -> String
 }
 
 /// A desk with the spectra of the simulated camera and of its chart.
-fn desk() -> Desk {
+pub(super) fn desk() -> Desk {
     let desk = Desk::new();
     let camera = Camera::simulated_one().sensitivities;
     desk.put("camera.csv", csv(["red", "green", "blue"].into_iter().zip(&camera)));
@@ -229,22 +229,4 @@ fn spectra_that_cannot_be_used_are_named() {
         desk.fails(2, &arguments, &words);
     }
     assert!(!desk.names().contains(&"p.toml".to_owned()));
-}
-
-#[test]
-fn the_tables_of_the_papers_are_printed() {
-    let desk = desk();
-    let run = desk.run(&["evaluate", "--sensitivities", "camera.csv", "--set", "chart=chart.csv"]);
-    assert_eq!(run.code, 0, "{}", run.err);
-    // As tests/colour_correction/twenty_four.rs has it from numpy.
-    let row = run.out.lines().find(|l| l.contains("root-2")).unwrap();
-    let values: Vec<&str> = row.split_whitespace().collect();
-    assert_eq!(values, ["root-2", "0.77", "0.52", "2.43", "2.6"]);
-    assert!(run.out.contains("exposure x1.5"));
-    assert!(run.out.lines().any(|l| l.contains("polynomial-4") && l.contains("too few colours")));
-    // The papers' own figures stand beside the papers' camera and light.
-    std::fs::rename(desk.path("camera.csv"), desk.path("sony_dxc-930.csv")).unwrap();
-    let run = desk.run(&["evaluate", "--sensitivities", "sony_dxc-930.csv", "--set", "SG=chart.csv"]);
-    let row = run.out.lines().find(|l| l.contains("root-2")).unwrap();
-    assert!(row.ends_with("2.8    1.8    8.7"), "{row}");
 }

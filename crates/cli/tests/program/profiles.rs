@@ -242,6 +242,23 @@ fn the_light_of_the_colours_can_be_named() {
     let (by_white, _) = developed(&desk, &[]);
     let (tube, said) = developed(&desk, &["--illuminant", "FL11"]);
     assert!(tube != by_white && said.contains("for F11"), "{said}");
+    // The same lamp measured: what is written down needs no file.
+    let fl11 = darkroot_colour::illuminant::Illuminant::by_name("FL11").unwrap().spectrum();
+    let column = |i: usize| (380 + 5 * i).to_string();
+    let (nm, powers): (Vec<String>, Vec<String>) =
+        (0..81).map(|i| (column(i), fl11.0[i].to_string())).unzip();
+    desk.put("lamp.csv", format!("name,{}\nshop,{}\n", nm.join(","), powers.join(",")));
+    let (measured, said) = developed(&desk, &["--illuminant", "lamp.csv"]);
+    assert!(said.contains("for shop"), "{said}");
+    let pixels = |png: &[u8]| image::load_from_memory(png).unwrap().to_rgb8().into_raw();
+    let off = pixels(&measured).iter().zip(pixels(&tube)).map(|(a, b)| a.abs_diff(b)).max();
+    assert!(off <= Some(1), "{off:?}");
+    let recipe = desk.run(&["recipe", "--illuminant", "lamp.csv"]);
+    desk.put("shop.toml", recipe.out);
+    std::fs::remove_file(desk.path("lamp.csv")).unwrap();
+    assert!(developed(&desk, &["--recipe", "shop.toml"]).0 == measured);
+    let lost = desk.run(&["develop", "a.dng", "--overwrite", "--illuminant", "lamp.csv"]);
+    assert!(lost.code != 0 && lost.err.contains("lamp.csv: no such file"), "{}", lost.err);
     let refused =
         desk.run(&["develop", "a.dng", "--overwrite", "--profile", "matrix", "--illuminant", "FL11"]);
     assert!(refused.code != 0 && refused.err.contains("F11 needs a profile"), "{}", refused.err);

@@ -16,7 +16,8 @@ use darkroot_profile::{Errors, Kind, Model, Sensitivities, Summary};
 use rayon::prelude::*;
 
 use super::ReflectanceSet;
-use super::published::{Published, key, named};
+use super::cameras::{cut, names, without_judged};
+use super::published::{Published, named};
 use crate::fault::SpectraError;
 use crate::light::LightSource;
 use crate::{Error, ProfileStore, spectra};
@@ -115,9 +116,7 @@ pub fn evaluate(request: &Request) -> Result<Outcome, Error> {
     let cameras = read(&request.cameras, &request.published, &mut without_matrix)?;
     without_matrix.sort();
     without_matrix.dedup();
-    let is_judged =
-        |s: &Spectrum| request.judged.iter().flat_map(|set| &set.reflectances).any(|j| near(s, j));
-    let surfaces: Vec<Spectrum> = request.surfaces.iter().filter(|s| !is_judged(s)).cloned().collect();
+    let surfaces = without_judged(&request.surfaces, &request.judged);
     let surfaces_left_out = request.surfaces.len() - surfaces.len();
     let cut = |light: &Spectrum| cut(light, request.between);
     let d65 = LightSource::by_name("D65")
@@ -213,31 +212,12 @@ fn twins(one: &Known, other: &Known) -> bool {
     one.name == other.name || one.matrix == other.matrix
 }
 
-/// Whether two reflectances are the same measurement.
-fn near(a: &Spectrum, b: &Spectrum) -> bool {
-    a.0.iter().zip(&b.0).all(|(a, b)| (a - b).abs() < 1e-6)
-}
-
-/// The light, dark outside of the wavelengths that count.
-fn cut(light: &Spectrum, (first, last): (f64, f64)) -> Spectrum {
-    let counts = |nm: f64| (first..=last).contains(&nm);
-    Spectrum(std::array::from_fn(|i| if counts(Spectrum::wavelength(i)) { light.0[i] } else { 0.0 }))
-}
-
-/// The cameras of these files that have a published matrix. The name of a camera is that which a built-in profile gives for
-/// the file, or the file's own: `cam_SOURCE_MAKE_MODEL.csv`.
+/// The cameras of these files that have a published matrix.
 fn read(paths: &[PathBuf], published: &[Published], without: &mut Vec<PathBuf>) -> Result<Vec<Known>, Error> {
     let store = ProfileStore::builtin();
-    let built_in = store.all();
     let mut known = Vec::new();
     for path in paths {
-        let file = path.file_name().unwrap_or_default().to_string_lossy();
-        let profile = built_in.iter().find(|found| found.profile.origin().sensitivities == file);
-        let names: Vec<String> = match profile.map(|found| found.profile.camera()) {
-            Some(camera) => std::iter::once(camera.name()).chain(camera.aliases.iter().cloned()).collect(),
-            None => vec![of_file(path)],
-        };
-        match names.iter().find_map(|name| named(published, &key(name))) {
+        match names(&store, path).iter().find_map(|name| named(published, name)) {
             Some(found) => known.push(Known {
                 name: found.name(),
                 sensitivities: spectra::read_sensitivities(path)?.0,
@@ -251,12 +231,4 @@ fn read(paths: &[PathBuf], published: &[Published], without: &mut Vec<PathBuf>) 
         return Err(Error::spectra(path, SpectraError::NoMatrix));
     }
     Ok(known)
-}
-
-/// "nikon d700" for `cam_source_nikon_d700.csv`.
-fn of_file(path: &Path) -> String {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let parts: Vec<&str> = stem.split('_').collect();
-    let first = if parts.first() == Some(&"cam") { 2 } else { 0 };
-    parts.get(first..).unwrap_or_default().join(" ")
 }

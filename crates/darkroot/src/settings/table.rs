@@ -259,14 +259,15 @@ pub const SETTINGS: [Setting; 17] = [
         alias: None,
         noun: "illuminant",
         kind: Kind::Text {
-            form: "auto, a CIE light (A, D65, FL11, LED-B3), a temperature (3000K), or a chromaticity (0.34,0.36)",
+            form: "auto, a CIE light (A, D65, FL11, LED-B3), a temperature (3000K), a chromaticity (0.34,0.36), or, on the \
+                   command line, a CSV file of a spectrum (lamp.csv, lamps.csv:NAME)",
             example: "\"FL11\" or \"3000K\"",
         },
         default: AUTO,
         group: Group::Picture,
         placeholder: "LIGHT",
         help: "The light that the profile's colours are computed for: auto (what the white tells), a CIE light (FL11), \
-               3000K, or x,y; the white balance stays as it is",
+               3000K, x,y, or a spectrum (lamp.csv, lamps.csv:NAME); the white balance stays as it is",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.light, light(text)),
     },

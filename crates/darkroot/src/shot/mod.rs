@@ -14,7 +14,7 @@ use darkroot_calibrate::{CrossValidation, MeasuredPatch};
 use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, Slope};
 
 pub use darkroot_calibrate::gates::near;
-pub use darkroot_calibrate::{Finding, Gate, Verdict};
+pub use darkroot_calibrate::{Correct, Finding, Gate, Verdict};
 pub(crate) use light::light_of;
 pub use view::View;
 pub(crate) use view::common_name;
@@ -33,11 +33,11 @@ pub struct ShotOptions {
     pub flat: Option<PathBuf>,
     /// A shot with the lens closed.
     pub dark: Option<PathBuf>,
-    /// Take the slope of light over the chart out, as far as the patches show it: for each channel on its own where the
-    /// light's colour changes and patches that had no say in it bear that out, else one for all.
-    pub even_out: bool,
-    /// Take the glare out that the patches show, channel by channel: it has the colour of what dazzles.
-    pub correct_glare: bool,
+    /// Whether the slope of light over the chart is taken out, as far as the patches show it: for each channel on its own
+    /// where the light's colour changes and patches that had no say in it bear that out, else one for all.
+    pub even_out: Correct,
+    /// Whether the glare is taken out that the patches show, channel by channel: it has the colour of what dazzles.
+    pub correct_glare: Correct,
     /// Names of patches to leave out.
     pub exclude: Vec<String>,
     /// Use shots that fail a gate.
@@ -140,7 +140,8 @@ fn measured(
     let treatment = Treatment { even_out, correct_glare, exclude: &options.exclude };
     let found = shot::correct(chart, &measured, treatment).map_err(|e| Error::chart(path, e))?;
 
-    let corrected = Corrected { unevenness: even_out || options.flat.is_some(), glare: correct_glare };
+    let unevenness = found.corrected.unevenness || options.flat.is_some();
+    let corrected = Corrected { unevenness, ..found.corrected };
     let patches = in_frame(&place.patches);
     let whole = shot::Place { corners: &place.corners, patches: &patches };
     let gates = shot::judge(chart, light, whole, &measured, &found, corrected);

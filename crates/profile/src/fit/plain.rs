@@ -41,6 +41,16 @@ type Value = dyn Fn([f64; 3], usize) -> f64;
 /// # Errors
 /// Too few colours, colours that do not determine the terms, or another kind of model.
 pub fn left_out_at_exposure(samples: &Samples, kind: Kind, exposure: f64) -> Result<Vec<Xyz>, FitError> {
+    let scaled: Vec<[f64; 3]> = samples.rgb().iter().map(|rgb| rgb.map(|v| v * exposure)).collect();
+    left_out_seen_as(samples, kind, &scaled)
+}
+
+/// What they make of the same colours as the camera saw them another time, each colour left out of its fit: the protocol of
+/// the paper's third table. `seen` has camera RGB of each colour of the samples.
+///
+/// # Errors
+/// As [`left_out_at_exposure`].
+pub fn left_out_seen_as(samples: &Samples, kind: Kind, seen: &[[f64; 3]]) -> Result<Vec<Xyz>, FitError> {
     let (count, value): (usize, Box<Value>) = match kind {
         Kind::Polynomial(degree) => {
             let terms = polynomial::terms(degree);
@@ -50,14 +60,14 @@ pub fn left_out_at_exposure(samples: &Samples, kind: Kind, exposure: f64) -> Res
         Kind::Root(order) => (order.terms().len(), Box::new(move |rgb, term| order.terms()[term].value(rgb))),
         _ => return Err(FitError::Undetermined { kind }),
     };
-    let have = samples.len();
+    let have = samples.len().min(seen.len());
     if have < count + 1 {
         return Err(FitError::TooFew { kind, need: count + 1, have });
     }
-    let features =
-        |k: f64| DMatrix::from_fn(have, count, |i, term| value(samples.rgb()[i].map(|v| v * k), term));
-    let problem = Problem { rows: features(1.0), targets: targets(samples.xyz()), data: have, block: 1 };
-    let estimates = problem.left_out_at(&features(exposure)).ok_or(FitError::Undetermined { kind })?;
+    let features = |rgb: &[[f64; 3]]| DMatrix::from_fn(have, count, |i, term| value(rgb[i], term));
+    let problem =
+        Problem { rows: features(samples.rgb()), targets: targets(samples.xyz()), data: have, block: 1 };
+    let estimates = problem.left_out_at(&features(seen)).ok_or(FitError::Undetermined { kind })?;
     Ok(triples(&estimates).into_iter().map(|[x, y, z]| Xyz::new(x, y, z)).collect())
 }
 

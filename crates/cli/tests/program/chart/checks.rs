@@ -8,7 +8,7 @@ fn uneven_light_is_taken_out_by_a_flat() {
     let desk = desk(&exposure);
     let flat = expose(&Scene::flat(SIZE, Spectrum::constant(0.5)), &Camera::simulated_one(), &exposure);
     desk.put("flat.dng", dng::write(&flat, dng::Storage::Uncompressed));
-    let plain = figures(&profile(&desk, &["--accept", "-o", "a.toml", "--json"]));
+    let plain = figures(&profile(&desk, &["--accept", "--even-out=never", "-o", "a.toml", "--json"]));
     let even = figures(&profile(&desk, &["--flat", "flat.dng", "-o", "b.toml", "--json"]));
     assert!(
         mean(&even, "linear") < 0.7 * mean(&plain, "linear"),
@@ -19,14 +19,31 @@ fn uneven_light_is_taken_out_by_a_flat() {
 }
 
 #[test]
-fn glare_is_measured_and_taken_out_when_asked() {
+fn glare_is_measured_and_taken_out_where_that_helps() {
     let desk = desk(&Exposure { glare: 0.02, noise: None, ..daylight() });
-    let plain = profile(&desk, &["-o", "a.toml", "--json"]);
+    let plain = profile(&desk, &["--correct-glare=never", "-o", "a.toml", "--json"]);
     let veil = figures(&plain)["shots"][0]["glare"].as_f64().unwrap();
     // Two percent of the scene's mean, which is about a fifth of white.
     assert!((0.002..0.01).contains(&veil), "{veil}");
-    let clean = figures(&profile(&desk, &["--correct-glare", "-o", "b.toml", "--json"]));
-    assert!(mean(&clean, "linear") < mean(&figures(&plain), "linear"));
+    let asked = figures(&profile(&desk, &["--correct-glare", "-o", "b.toml", "--json"]));
+    assert!(mean(&asked, "linear") < mean(&figures(&plain), "linear"));
+    // Patches that had no part in finding it decide, and here they bear it out.
+    let unasked = profile(&desk, &["-o", "c.toml", "--json"]);
+    assert!(unasked.err.contains("glare was taken out: "), "{}", unasked.err);
+    assert!(mean(&figures(&unasked), "linear") < mean(&figures(&plain), "linear"));
+    let wrong = desk.run(&["profile", "chart.dng", "--light", "D50", "--correct-glare=sometimes"]);
+    assert!(wrong.code == 2 && wrong.err.contains("auto, always, never"), "{}", wrong.err);
+}
+
+#[test]
+fn a_slope_of_light_is_taken_out_where_that_helps() {
+    let desk = desk(&Exposure { falloff: 0.5, ..daylight() });
+    let run = |arguments: &[&str]| figures(&profile(&desk, &[arguments, &["--accept", "--json"]].concat()));
+    let plain = run(&["--even-out=never", "-o", "a.toml"]);
+    let best = run(&["-o", "b.toml"]);
+    let asked = run(&["--even-out", "-o", "c.toml"]);
+    let [plain, best, asked] = [plain, best, asked].map(|figures| mean(&figures, "linear"));
+    assert!(best <= plain.min(asked) + 1e-9, "{plain} {best} {asked}");
 }
 
 #[test]
