@@ -10,12 +10,13 @@ use darkroot_profile::{Model, PlaneModel, Profile};
 use crate::analysis::Analysis;
 use crate::corrections::is_supported;
 use crate::demosaic::Method;
+use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
 use crate::gamut::Primaries;
-use crate::highlights::Treatment;
+use crate::highlights::{CLIPPED, Treatment};
 use crate::light::LinearLight;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Crop, Exposure, Highlights, OutputSpace, Recipe};
+use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, OutputSpace, Recipe};
 use crate::survey::Survey;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
@@ -58,6 +59,8 @@ pub struct Plan {
     pub(crate) picture_corrections: Vec<Correction>,
     pub(crate) highlights: Treatment,
     pub(crate) noise: Noise,
+    /// What takes noise from the mosaic; `None` for nothing.
+    pub(crate) denoiser: Option<Arc<Denoiser>>,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
@@ -106,6 +109,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         OutputSpace::Camera => (RgbSpace::REC2020, TransferCurve::Linear),
     };
     let camera_output = recipe.output.space == OutputSpace::Camera;
+    let denoiser = denoiser(analysis, recipe.denoise, curve.is_none() || camera_output, multipliers);
     let is_applied = |correction: &&Correction| is_supported(correction);
     let all = || capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
     for _ in all().filter(|c| !is_applied(c)) {
@@ -123,9 +127,13 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         crop,
         orientation: capture.orientation,
         noise: match demosaic {
-            Method::Lmmse => Noise::of(analysis.noise(), multipliers),
+            Method::Lmmse => {
+                let left = denoiser.as_ref().map_or(1.0, |filter| filter.left());
+                Noise::of(analysis.noise(), multipliers).times(left)
+            }
             _ => Noise::NONE,
         },
+        denoiser,
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
             _ if camera_output => Treatment::Keep,
@@ -143,6 +151,23 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         space: recipe.output.space,
         bits: recipe.output.bits,
     })
+}
+
+/// What takes away noise: as much as is asked for, or as suits the look.
+fn denoiser(
+    analysis: &Analysis,
+    asked: Denoise,
+    measuring: bool,
+    multipliers: [f32; 3],
+) -> Option<Arc<Denoiser>> {
+    let amount = asked.amount.unwrap_or(if measuring { 0.0 } else { 1.0 });
+    let strength = Strength { luma: amount * asked.luma, chroma: amount * asked.chroma };
+    if analysis.capture().rendered || strength.luma <= 0.0 && strength.chroma <= 0.0 {
+        return None;
+    }
+    let model = analysis.noise_model()?;
+    let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
+    analysis.denoiser(Asked { model, multipliers, strength, limits })
 }
 
 /// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another

@@ -9,7 +9,7 @@ use darkroot_raw::Decoder;
 
 use super::Engine;
 use super::setting::{Changes, Group, Kind, Setting, Word};
-use super::text::{NotAValue, balance, light, number, one_of, profile, space};
+use super::text::{NotAValue, balance, denoise, light, number, one_of, profile, space};
 
 const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
     Word { word, also: "", value, help }
@@ -86,7 +86,7 @@ fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 17] = [
+pub const SETTINGS: [Setting; 20] = [
     Setting {
         name: "format",
         alias: None,
@@ -216,6 +216,43 @@ pub const SETTINGS: [Setting; 17] = [
         help: "What becomes of clipped highlights (the linear look keeps them unless clip is asked for)",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.highlights, one_of(&HIGHLIGHTS, text)),
+    },
+    Setting {
+        name: "denoise",
+        alias: None,
+        noun: "amount of denoising",
+        kind: Kind::Text { form: "auto, off, or a number from 0 to 2", example: "\"off\" or \"0.5\"" },
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "AMOUNT",
+        help: "Noise taken away before interpolation: auto (all that was measured; none in the linear look and in camera \
+               RGB), off, or so many times that, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.denoise.amount, denoise(text)),
+    },
+    Setting {
+        name: "denoise-luma",
+        alias: None,
+        noun: "share of denoising",
+        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
+        default: "1",
+        group: Group::Picture,
+        placeholder: "SHARE",
+        help: "Share of it for noise of brightness, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.denoise.luma, number(text).map(|n| n as f32)),
+    },
+    Setting {
+        name: "denoise-chroma",
+        alias: None,
+        noun: "share of denoising",
+        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
+        default: "1",
+        group: Group::Picture,
+        placeholder: "SHARE",
+        help: "Share of it for noise of colour, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.denoise.chroma, number(text).map(|n| n as f32)),
     },
     Setting {
         name: "demosaic",
