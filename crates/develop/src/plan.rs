@@ -129,7 +129,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         noise: match demosaic {
             Method::Lmmse => {
                 let left = denoiser.as_ref().map_or(1.0, |filter| filter.left());
-                Noise::of(analysis.noise(), multipliers).times(left)
+                if left > 0.0 { Noise::of(analysis.noise(), multipliers).times(left) } else { Noise::NONE }
             }
             _ => Noise::NONE,
         },

@@ -34,6 +34,7 @@ pub(crate) struct Scratch {
     planes: [Vec<f32>; 4],
     /// Share of the variance left in them, for pairs of rows and columns.
     left: [Vec<f32>; 4],
+    rings: Rings,
 }
 
 impl Scratch {
@@ -68,13 +69,15 @@ pub(super) fn denoise(
     }
     let size = (width / 2, height / 2);
     let corner = (x / 2, y / 2);
-    let Scratch { mosaic, planes, left, .. } = scratch;
+    let Scratch { mosaic, planes, left, rings, .. } = scratch;
     for (plane, left) in planes.iter_mut().zip(left.iter_mut()) {
         plane.resize(size.0 * size.1, 0.0);
         left.resize(size.0 * size.1 / 4, 0.0);
     }
     let unit = UnitNoise::new();
-    let mut rings = Rings::new(size.0);
+    if rings.row.len() != size.0 {
+        *rings = Rings::new(size.0);
+    }
     vectorised(
         #[inline(always)]
         || {
@@ -82,8 +85,7 @@ pub(super) fn denoise(
             for (k, (plane, left)) in planes.iter_mut().zip(left.iter_mut()).enumerate() {
                 let strength = filter.strengths[k];
                 let thresholds = [0, 1].map(|j| threshold(unit.variances[j], strength));
-                let coarse = |row: isize, out: &mut [f32]| coarse.row(k, corner.0, corner.1 + row, out);
-                rings.clean((plane, left), size, &unit, thresholds, coarse);
+                rings.clean((plane, left), size, &unit, thresholds, (coarse, k, corner));
             }
             back(filter, (planes, left), mosaic, size);
         },
@@ -138,7 +140,8 @@ fn back(
     }
 }
 
-/// The last rows of each step over a plane.
+/// The last rows of each step over a plane. What lies at the ends of a row, where a step would look beyond it, stays 0.
+#[derive(Default)]
 struct Rings {
     smooth: Vec<Vec<f32>>,
     details: [Vec<Vec<f32>>; FINE],
@@ -149,6 +152,8 @@ struct Rings {
     /// The same for each column.
     factors: [Vec<f32>; FINE],
     coarse: Vec<f32>,
+    /// Of the coarse scales, at every second column and the one after the last.
+    line: Vec<f32>,
     row: Vec<f32>,
     half: Vec<f32>,
 }
@@ -164,13 +169,14 @@ impl Rings {
             removed: two(columns / 2),
             factors: two(columns),
             coarse: vec![0.0; columns],
+            line: vec![0.0; columns / 2 + 1],
             row: vec![0.0; columns],
             half: vec![0.0; columns / 2],
         }
     }
 
     /// Takes the noise of all scales from a plane but for its border, and notes what share of the variance is left. Of the
-    /// coarse scales `coarse` tells what to take from a row.
+    /// coarse scales `coarse` tells what to take from plane `k`, which begins at this column and row.
     #[inline(always)]
     fn clean(
         &mut self,
@@ -178,7 +184,7 @@ impl Rings {
         (columns, rows): (usize, usize),
         unit: &UnitNoise,
         thresholds: [f32; FINE],
-        coarse: impl Fn(isize, &mut [f32]),
+        (coarse, k, (x, top)): (&Coarse, usize, (isize, isize)),
     ) {
         for y in 1..rows - 1 {
             let row = |y: usize| &plane[y * columns..][..columns];
@@ -205,7 +211,7 @@ impl Rings {
                 let left = &mut left[(pair - 1) * (columns / 2)..][..columns / 2];
                 self.shrink(pair - 1, left, unit, thresholds);
                 for y in [2 * pair - 2, 2 * pair - 1] {
-                    coarse(y as isize, &mut self.coarse);
+                    coarse.row(k, x, top + y as isize, &mut self.line, &mut self.coarse);
                     self.take(y, &mut plane[y * columns..][..columns]);
                 }
             }

@@ -54,9 +54,9 @@ impl Coarse {
     }
 
     /// What to take from row `y` of a plane from column `x` on, both even or odd and counted from the active area's corner.
-    /// Columns are even in number, and the first is even.
+    /// Columns are even in number, and the first is even; `line` has room for one more than half of them.
     #[inline(always)]
-    pub(super) fn row(&self, plane: usize, x: isize, y: isize, out: &mut [f32]) {
+    pub(super) fn row(&self, plane: usize, x: isize, y: isize, line: &mut [f32], out: &mut [f32]) {
         let row = |y: isize| {
             let y = y.clamp(0, self.rows as isize - 1) as usize;
             &self.planes[plane][y * self.columns..][..self.columns]
@@ -64,7 +64,6 @@ impl Coarse {
         let (first, needed) = (x.div_euclid(2), out.len() / 2 + 1);
         let upper = row(y.div_euclid(2));
         let lower = if y.rem_euclid(2) == 0 { upper } else { row(y.div_euclid(2) + 1) };
-        let mut line = vec![0f32; needed];
         if first >= 0 && first as usize + needed <= self.columns {
             let (upper, lower) = (&upper[first as usize..][..needed], &lower[first as usize..][..needed]);
             for i in 0..needed {
@@ -76,7 +75,7 @@ impl Coarse {
                 *v = 0.5 * (upper[x] + lower[x]);
             }
         }
-        between(&line, out);
+        between(line, out);
     }
 }
 

@@ -26,7 +26,7 @@ const SIDE: usize = WINDOW / 2;
 /// Most windows that are looked at.
 const MOST_WINDOWS: usize = 16_000;
 /// Most groups of windows, and fewest windows of one.
-const MOST_GROUPS: usize = 48;
+const MOST_GROUPS: usize = 24;
 const FEWEST_WINDOWS: usize = 20;
 /// Samples from this share of the clipping level on have less noise than others.
 const NEARLY_CLIPPED: f32 = 0.9;
@@ -34,6 +34,9 @@ const NEARLY_CLIPPED: f32 = 0.9;
 const ONLY_NOISE: f32 = 1.25;
 /// Shares of such windows up to which the careful estimate holds, and from which on the likely one does.
 const TRUST: (f64, f64) = (0.4, 0.7);
+
+/// Below the first of them the careful estimate is lowered with the share, to this part at most.
+const LEAST: f64 = 0.35;
 
 /// A way to estimate.
 #[derive(Clone, Copy)]
@@ -90,8 +93,9 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, limits: [f32; 3])
     };
     let share = windows.iter().filter(only_noise).count() as f64 / windows.len() as f64;
     let trust = ((share - TRUST.0) / (TRUST.1 - TRUST.0)).clamp(0.0, 1.0) as f32;
+    let caution = (share / TRUST.0).clamp(LEAST, 1.0) as f32;
     let mixed = likely.map(|line| {
-        let mix = |likely: f32, careful: f32| careful + trust * (likely - careful);
+        let mix = |likely: f32, careful: f32| careful * caution + trust * (likely - careful * caution);
         Line { slope: mix(line.slope, careful.slope), floor: mix(line.floor, careful.floor) }
     });
     let mean = |channel: usize| {
