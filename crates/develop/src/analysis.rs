@@ -7,6 +7,7 @@ use darkroot_photo::{Capture, Counts};
 use crate::auto_white::Seen;
 use crate::denoise::{self, Asked, Denoiser, Measured, NoiseModel};
 use crate::light::LinearLight;
+use crate::mend::Mends;
 use crate::noise::{self, Window};
 use crate::survey::{self, Survey};
 use crate::white::CameraMatrix;
@@ -21,6 +22,7 @@ pub struct Analysis {
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
     samples_noise: OnceLock<Option<Measured>>,
+    mends: OnceLock<Arc<Mends>>,
     denoiser: Mutex<Option<Arc<Denoiser>>>,
     colours: OnceLock<Option<Seen>>,
 }
@@ -35,6 +37,7 @@ impl Analysis {
             survey: OnceLock::new(),
             noise: OnceLock::new(),
             samples_noise: OnceLock::new(),
+            mends: OnceLock::new(),
             denoiser: Mutex::new(None),
             colours: OnceLock::new(),
         }
@@ -80,8 +83,7 @@ impl Analysis {
     /// How strong the noise of samples is, by their light: as the file says, else as the picture shows. `None` where there
     /// is none to speak of, or nothing tells it.
     pub fn noise_model(&self) -> Option<NoiseModel> {
-        let measured = || denoise::measured(&self.capture, &self.light, self.survey().saturation);
-        let measured = (*self.samples_noise.get_or_init(measured))?;
+        let measured = self.measured_noise()?;
         let model = NoiseModel::from_profile(&self.capture.noise_profile).unwrap_or(measured.model);
         let step = match self.capture.counts {
             Counts::U16(_) => 1.0 / self.capture.white.0.iter().fold(f32::MIN_POSITIVE, |a, &b| a.max(b)),
@@ -89,6 +91,20 @@ impl Analysis {
             Counts::F32(_) => 1.0 / 65535.0,
         };
         (!model.is_clean(measured.mean, step)).then_some(model)
+    }
+
+    fn measured_noise(&self) -> Option<&Measured> {
+        let measured = || denoise::measured(&self.capture, &self.light, self.survey().saturation);
+        self.samples_noise.get_or_init(measured).as_ref()
+    }
+
+    /// What is to be put right in single samples; nothing in a clean picture.
+    pub(crate) fn mends(&self) -> &Arc<Mends> {
+        let found = || {
+            let (model, measured) = (self.noise_model()?, self.measured_noise()?);
+            Some(Mends::of(&self.capture, &self.light, &model, measured))
+        };
+        self.mends.get_or_init(|| Arc::new(found().unwrap_or_default()))
     }
 
     /// The filter for noise: the last one, with what it knows of the frame, where the same is asked for again.

@@ -18,7 +18,8 @@
 
 pub mod recipe;
 pub use recipe::{
-    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Highlights, Look, Output, OutputSpace, Recipe,
+    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Highlights, HotPixels, Look, Output, OutputSpace,
+    Recipe,
 };
 
 pub mod error;
@@ -72,5 +73,6 @@ pub mod fringe;
 pub mod gamut;
 pub mod highlights;
 pub mod level;
+mod mend;
 pub mod tone;
 pub mod transfer;

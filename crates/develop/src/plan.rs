@@ -15,8 +15,9 @@ use crate::error::Error;
 use crate::gamut::Primaries;
 use crate::highlights::{CLIPPED, Treatment};
 use crate::light::LinearLight;
+use crate::mend::Mends;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, OutputSpace, Recipe};
+use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
 use crate::survey::Survey;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
@@ -59,6 +60,8 @@ pub struct Plan {
     pub(crate) picture_corrections: Vec<Correction>,
     pub(crate) highlights: Treatment,
     pub(crate) noise: Noise,
+    /// What is put right in single samples.
+    pub(crate) mends: Arc<Mends>,
     /// What takes noise from the mosaic; `None` for nothing.
     pub(crate) denoiser: Option<Arc<Denoiser>>,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
@@ -109,7 +112,10 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         OutputSpace::Camera => (RgbSpace::REC2020, TransferCurve::Linear),
     };
     let camera_output = recipe.output.space == OutputSpace::Camera;
-    let denoiser = denoiser(analysis, recipe.denoise, curve.is_none() || camera_output, multipliers);
+    let measuring = curve.is_none() || camera_output;
+    let mends = mends(analysis, recipe.hot_pixels, measuring);
+    notes.extend(mends.notes());
+    let denoiser = denoiser(analysis, recipe.denoise, measuring, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
     let all = || capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
     for _ in all().filter(|c| !is_applied(c)) {
@@ -133,6 +139,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
             }
             _ => Noise::NONE,
         },
+        mends,
         denoiser,
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
@@ -153,12 +160,22 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     })
 }
 
+/// What is put right in single samples. A measurement gets them as they are.
+fn mends(analysis: &Analysis, hot_pixels: HotPixels, measuring: bool) -> Arc<Mends> {
+    match hot_pixels {
+        _ if measuring || analysis.capture().rendered => Arc::default(),
+        HotPixels::Auto => Arc::clone(analysis.mends()),
+        HotPixels::Off => Arc::new(analysis.mends().without_pixels()),
+    }
+}
+
 /// What takes away noise: as much as is asked for, or as suits the look.
 fn denoiser(
     analysis: &Analysis,
     asked: Denoise,
     measuring: bool,
     multipliers: [f32; 3],
+    mends: &Arc<Mends>,
 ) -> Option<Arc<Denoiser>> {
     let amount = asked.amount.unwrap_or(if measuring { 0.0 } else { 1.0 });
     let strength = Strength { luma: amount * asked.luma, chroma: amount * asked.chroma };
@@ -167,7 +184,7 @@ fn denoiser(
     }
     let model = analysis.noise_model()?;
     let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
-    analysis.denoiser(Asked { model, multipliers, strength, limits })
+    analysis.denoiser(Asked { model, multipliers, strength, limits, mends: Arc::clone(mends) })
 }
 
 /// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another

@@ -9,6 +9,8 @@ pub struct Recipe {
     pub balance: Balance,
     /// What becomes of clipped highlights.
     pub highlights: Highlights,
+    /// What becomes of hot and dead pixels.
+    pub hot_pixels: HotPixels,
     /// How much noise is taken away.
     pub denoise: Denoise,
     /// How missing colours are interpolated.
@@ -64,6 +66,16 @@ pub enum Highlights {
     Clip,
     /// Nothing: values stay as the sensor gave them, which tints clipped areas. For measurement.
     Keep,
+}
+
+/// What becomes of pixels that are hot or dead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HotPixels {
+    /// They take the light of those around them; in the linear look and in camera RGB they stay.
+    #[default]
+    Auto,
+    /// They stay.
+    Off,
 }
 
 /// How much noise is taken away before interpolation: shares of what the noise model expects.

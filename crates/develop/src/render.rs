@@ -216,7 +216,10 @@ impl<'a> Render<'a> {
         let begin = (x - border as isize, y - border as isize);
         let (capture, light) = (&*plan.capture, &*plan.light);
         let levelled: &Levelled<'_> = match &self.denoiser {
-            None => &|x, y, row| light.levelled(&capture.counts, x, y, row),
+            None => &|x, y, row| {
+                light.levelled(&capture.counts, x, y, row);
+                plan.mends.row(x, y, row);
+            },
             Some((filter, coarse)) => {
                 filter.denoise((capture, light), coarse, covered(capture, begin, size), denoised);
                 &|x, y, row| denoised.row(x, y, row)

@@ -3,7 +3,7 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
-use darkroot_develop::{Balance, Bits, Crop, Demosaic, Highlights, Look};
+use darkroot_develop::{Balance, Bits, Crop, Demosaic, Highlights, HotPixels, Look};
 use darkroot_encode::{ChromaSubsampling, Format};
 use darkroot_raw::Decoder;
 
@@ -66,6 +66,10 @@ pub(super) const HIGHLIGHTS: [Word<Highlights>; 3] = [
     word("clip", Highlights::Clip, "Cut all channels where the first one clips"),
     word("keep", Highlights::Keep, "Leave the values as they are"),
 ];
+pub(super) const HOT_PIXELS: [Word<HotPixels>; 2] = [
+    word(AUTO, HotPixels::Auto, "They take the light of those around them; stars stay"),
+    word("off", HotPixels::Off, "They stay"),
+];
 pub(super) const DEMOSAIC: [Word<Demosaic>; 2] = [
     word("best", Demosaic::Best, "The best for the sensor"),
     word("bilinear", Demosaic::Bilinear, "Fast and soft"),
@@ -86,7 +90,7 @@ fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 20] = [
+pub const SETTINGS: [Setting; 21] = [
     Setting {
         name: "format",
         alias: None,
@@ -216,6 +220,18 @@ pub const SETTINGS: [Setting; 20] = [
         help: "What becomes of clipped highlights (the linear look keeps them unless clip is asked for)",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.highlights, one_of(&HIGHLIGHTS, text)),
+    },
+    Setting {
+        name: "hot-pixels",
+        alias: None,
+        noun: "way with hot pixels",
+        kind: Kind::Words(const { &plain(&HOT_PIXELS) }),
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "",
+        help: "What becomes of hot and dead pixels (the linear look and camera RGB keep them)",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.hot_pixels, one_of(&HOT_PIXELS, text)),
     },
     Setting {
         name: "denoise",

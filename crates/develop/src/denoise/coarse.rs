@@ -36,7 +36,7 @@ impl Coarse {
         let (columns, rows) = (area.width.div_ceil(4) + 1, area.height.div_ceil(4) + 1);
         let mut planes = [0; 4].map(|_| vec![0f32; columns * rows]);
         let [a, b, c, d] = planes.each_mut().map(|p| p.par_chunks_mut(columns * ROWS));
-        let source = Source { capture, light };
+        let source = filter.source(capture, light);
         a.zip(b).zip(c.zip(d)).enumerate().try_for_each(|(i, ((a, b), (c, d)))| {
             if cancel.is_cancelled() {
                 return Err(Cancelled);

@@ -104,15 +104,21 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, limits: [f32; 3])
             planes.clone().map(|p| windows.iter().map(|w| f64::from(w[p].light)).sum::<f64>()).sum();
         (light / (planes.count() * windows.len()).max(1) as f64) as f32
     };
-    Some(Measured { model: NoiseModel { channels: mixed }, mean: [mean(0), mean(1), mean(2)] })
+    Some(Measured {
+        model: NoiseModel { channels: mixed },
+        mean: [mean(0), mean(1), mean(2)],
+        light: windows.iter().map(|window| window.map(|seen| seen.light)).collect(),
+    })
 }
 
 /// What the picture tells of its noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Measured {
     pub(crate) model: NoiseModel,
     /// Mean light of each channel, where it is not clipped.
     pub(crate) mean: [f32; 3],
+    /// Mean light of the four places of a Bayer block in each window, row by row from the active area's corner on.
+    pub(crate) light: Vec<[f32; 4]>,
 }
 
 /// The windows of one row of them, without those in which something clips.

@@ -39,9 +39,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use darkroot_photo::{Capture, Cfa, Layout, Rect};
 
 use crate::light::{LinearLight, layout_from};
+use crate::mend::Mends;
 use crate::stage::{Stage, WhenSmaller};
 use crate::view::{Cancel, Cancelled};
 use rotation::Rotation;
+use rows::Source;
 use stabilise::Stabiliser;
 
 /// What it asks of a tile: pixels around it, of which it gives none.
@@ -57,7 +59,7 @@ pub struct Strength {
 }
 
 /// What the filter is made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Asked {
     /// Noise of the samples by their light, before the file's corrections and before balancing.
     pub(crate) model: NoiseModel,
@@ -67,6 +69,8 @@ pub(crate) struct Asked {
     pub(crate) strength: Strength,
     /// Light at which each channel clips: such samples stay as they are.
     pub(crate) limits: [f32; 3],
+    /// What is put right before.
+    pub(crate) mends: Arc<Mends>,
 }
 
 /// The filter for one Bayer capture.
@@ -126,6 +130,10 @@ impl Denoiser {
         Ok(found)
     }
 
+    fn source<'a>(&'a self, capture: &'a Capture, light: &'a LinearLight) -> Source<'a> {
+        Source { capture, light, mends: &self.asked.mends }
+    }
+
     /// Share of the variance that is left where there is nothing but noise.
     pub(crate) fn left(&self) -> f32 {
         let Strength { luma, chroma } = self.asked.strength;
@@ -142,7 +150,7 @@ impl Denoiser {
         rect: Rect,
         scratch: &mut Scratch,
     ) {
-        bayer::denoise(self, rows::Source { capture, light }, coarse, rect, scratch);
+        bayer::denoise(self, self.source(capture, light), coarse, rect, scratch);
     }
 }
 
@@ -155,3 +163,5 @@ fn block(cfa: &Cfa) -> [usize; 4] {
 mod slow;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(crate) use tests::Random;

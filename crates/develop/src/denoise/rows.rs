@@ -4,6 +4,7 @@ use darkroot_photo::{Capture, Rect};
 
 use super::Denoiser;
 use crate::light::LinearLight;
+use crate::mend::Mends;
 use crate::tile::inside;
 
 /// Where light comes from.
@@ -11,9 +12,16 @@ use crate::tile::inside;
 pub(super) struct Source<'a> {
     pub(super) capture: &'a Capture,
     pub(super) light: &'a LinearLight,
+    pub(super) mends: &'a Mends,
 }
 
 impl Source<'_> {
+    /// Mended light of row `y` of the frame from column `x` on, inside the active area.
+    fn levelled(&self, x: usize, y: usize, out: &mut [f32]) {
+        self.light.levelled(&self.capture.counts, x, y, out);
+        self.mends.row(x, y, out);
+    }
+
     /// The light of row `y` from column `x` on, both counted from the active area's corner; beyond it the area is mirrored.
     pub(super) fn row(&self, x: isize, y: isize, out: &mut [f32]) {
         let Rect { x: left, y: top, width, height } = self.capture.active_area;
@@ -23,7 +31,7 @@ impl Source<'_> {
         let straight = place(0)..place(width);
         if !straight.is_empty() {
             let begin = left + (x + straight.start as isize) as usize;
-            self.light.levelled(&self.capture.counts, begin, y, &mut out[straight.clone()]);
+            self.levelled(begin, y, &mut out[straight.clone()]);
         }
         for i in (0..straight.start).chain(straight.end..out.len()) {
             let at = inside(x + i as isize + left as isize, left, width, 2);
@@ -32,7 +40,7 @@ impl Source<'_> {
                 out[i] = out[mirrored];
             } else {
                 let mut one = [0.0];
-                self.light.levelled(&self.capture.counts, at, y, &mut one);
+                self.levelled(at, y, &mut one);
                 out[i] = one[0];
             }
         }

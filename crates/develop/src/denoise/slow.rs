@@ -3,7 +3,6 @@
 use darkroot_photo::Capture;
 
 use super::Denoiser;
-use super::rows::Source;
 use super::shrink::{FINE, SCALES, UnitNoise, removed, threshold};
 use crate::light::LinearLight;
 
@@ -70,7 +69,7 @@ fn coarse_noise(plane: &[f32], columns: usize, thresholds: &[f32]) -> Vec<f32> {
 /// The light of the whole active area without noise.
 pub(super) fn denoised(filter: &Denoiser, capture: &Capture, light: &LinearLight) -> Vec<f32> {
     let area = capture.active_area;
-    let source = Source { capture, light };
+    let source = filter.source(capture, light);
     let sample = |x: isize, y: isize| {
         let mut one = [0.0];
         source.row(x, y, &mut one);

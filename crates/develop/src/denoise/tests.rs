@@ -9,16 +9,20 @@ use crate::light::LinearLight;
 use crate::view::Cancel;
 
 /// Numbers between 0 and 1, the same on every machine.
-struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    fn uniform(&mut self) -> f32 {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub(crate) fn uniform(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 40) as f32 + 0.5) / (1u64 << 24) as f32
     }
 
     /// Normal, of variance 1.
-    fn normal(&mut self) -> f32 {
+    pub(crate) fn normal(&mut self) -> f32 {
         let radius = (-2.0 * self.uniform().ln()).sqrt();
         radius * (std::f32::consts::TAU * self.uniform()).cos()
     }
@@ -32,7 +36,7 @@ fn model() -> NoiseModel {
 
 /// Light as `scene` says for a column and row, with noise.
 fn capture(letters: &str, size: Size, seed: u64, scene: impl Fn(usize, usize) -> f32) -> Capture {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let sample = |i: usize| {
         let light = scene(i % size.width, i / size.width);
         light + LINE.at(light).sqrt() * random.normal()
@@ -45,7 +49,8 @@ fn capture(letters: &str, size: Size, seed: u64, scene: impl Fn(usize, usize) ->
 
 fn filter(capture: &Capture, strength: f32) -> Denoiser {
     let strength = Strength { luma: strength, chroma: strength };
-    let asked = Asked { model: model(), multipliers: [2.0, 1.0, 1.5], strength, limits: [0.98; 3] };
+    let mends = Arc::default();
+    let asked = Asked { model: model(), multipliers: [2.0, 1.0, 1.5], strength, limits: [0.98; 3], mends };
     Denoiser::of(capture, asked).unwrap()
 }
 
@@ -147,6 +152,7 @@ fn twice_the_light_with_its_noise_is_twice_the_result() {
             multipliers: [2.0, 1.0, 1.5],
             strength: Strength { luma: 1.0, chroma: 1.0 },
             limits: [factor; 3],
+            mends: Arc::default(),
         };
         Denoiser::of(capture, asked).unwrap()
     };
@@ -183,6 +189,7 @@ fn no_sensor_but_bayer_and_no_strength_of_0_have_a_filter() {
         multipliers: [1.0; 3],
         strength: Strength { luma: 0.0, chroma: 0.0 },
         limits: [1.0; 3],
+        mends: Arc::default(),
     };
     assert!(Denoiser::of(&capture, asked).is_none());
 }
