@@ -15,6 +15,10 @@ use crate::light::LinearLight;
 const FAR: f32 = 15.0;
 /// Share of the brightest of them by which it must rise, or of the darkest by which it must fall.
 const SHARE: f32 = 0.5;
+/// Largest difference between the samples of its colour around it, as a share of its rise, and in standard deviations of noise:
+/// among details a bright dot may be one of them.
+const CALM: f32 = 0.1;
+const CALM_NOISE: f32 = 5.0;
 /// Largest rise of the four pixels beside it together, as a share of its own.
 const SPREAD: f32 = 0.1;
 /// Rise of those four beside the sharpest star, whatever its colour, and three standard deviations of its noise (of four
@@ -115,7 +119,8 @@ fn mended(at: impl Fn(isize, isize) -> f32, variance: impl Fn(f32) -> f32) -> Op
     }
     let rise = own - edge;
     let noise = variance(edge).sqrt();
-    if rise.abs() < FAR * noise || rise.abs() < SHARE * edge {
+    let calm = most - least < CALM * rise.abs() + CALM_NOISE * noise;
+    if rise.abs() < FAR * noise || rise.abs() < SHARE * edge || !calm {
         return None;
     }
     // Beside it, against samples of the same colours two pixels on: along the row and along the column.
