@@ -241,7 +241,7 @@ mod tests {
     fn texture_above_the_line_does_not_lift_it() {
         let group = |i: usize| {
             let light = (i as f64 + 0.5) / 40.0;
-            let texture = if i % 3 == 0 { 3.0 } else { 1.0 };
+            let texture = if i.is_multiple_of(3) { 3.0 } else { 1.0 };
             Group { light, variance: texture * (1e-4 * light + 1e-6) }
         };
         let line = line_through(&(0..40).map(group).collect::<Vec<_>>(), LIKELY).unwrap();

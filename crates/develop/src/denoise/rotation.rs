@@ -87,10 +87,10 @@ mod tests {
             let mut planes = [0; 4].map(|_| vec![0f32]);
             rotation.forth(samples.each_ref().map(|s| &s[..]), planes.each_mut().map(|p| &mut p[..]));
             assert!(planes[1..].iter().all(|p| p[0].abs() < 1e-6), "{planes:?}");
-            for place in 0..4 {
+            for (place, grey) in grey.into_iter().enumerate() {
                 let mut back = [0.0];
                 rotation.back(place, planes.each_ref().map(|p| &p[..]), &mut back);
-                assert!((back[0] - grey[place]).abs() < 1e-6);
+                assert!((back[0] - grey).abs() < 1e-6);
                 rotation.back_squared(place, [&[1.0], &[1.0], &[1.0], &[1.0]], &mut back);
                 assert!((back[0] - 1.0).abs() < 1e-6);
             }

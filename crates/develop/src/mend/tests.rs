@@ -103,7 +103,7 @@ fn dead_pixels_go_and_an_even_field_is_left_alone() {
 #[test]
 fn greens_that_differ_become_alike_and_others_stay() {
     let field = |gain: f32| {
-        let green = |x: usize, y: usize| if y % 2 == 0 && x % 2 == 1 { gain } else { 1.0 };
+        let green = |x: usize, y: usize| if y.is_multiple_of(2) && !x.is_multiple_of(2) { gain } else { 1.0 };
         let electrons = |i: usize| {
             let (x, y) = (i % SIZE.width, i / SIZE.width);
             (2000.0 + 3.0 * x as f32 + 200.0 * (y as f32 * 0.3).sin()) * green(x, y)
