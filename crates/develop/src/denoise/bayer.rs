@@ -38,6 +38,13 @@ pub(crate) struct Scratch {
 }
 
 impl Scratch {
+    /// Room for the mosaic of a rectangle that begins in this column and row of the frame.
+    pub(super) fn begin_at(&mut self, begin: (isize, isize), width: usize, height: usize) -> &mut [f32] {
+        (self.begin, self.width) = (begin, width);
+        self.mosaic.resize(width * height, 0.0);
+        &mut self.mosaic
+    }
+
     /// The light of row `y` of the frame from column `x` on, inside the rectangle that was denoised last.
     pub(crate) fn row(&self, x: usize, y: usize, out: &mut [f32]) {
         let column = (x as isize - self.begin.0) as usize;
@@ -61,10 +68,8 @@ pub(super) fn denoise(
     let span = |begin: usize, end: usize| (end - begin).next_multiple_of(ALIGNED) + 2 * BORDER;
     let (width, height) = (span(x, rect.right() - area.x), span(y, rect.bottom() - area.y));
     let (x, y) = (x as isize - BORDER as isize, y as isize - BORDER as isize);
-    scratch.begin = (x + area.x as isize, y + area.y as isize);
-    scratch.width = width;
-    scratch.mosaic.resize(width * height, 0.0);
-    for (i, row) in scratch.mosaic.chunks_exact_mut(width).enumerate() {
+    let begin = (x + area.x as isize, y + area.y as isize);
+    for (i, row) in scratch.begin_at(begin, width, height).chunks_exact_mut(width).enumerate() {
         source.row(x, y + i as isize, row);
     }
     let size = (width / 2, height / 2);

@@ -1,4 +1,4 @@
-//! How strong the noise of a Bayer capture is, as the picture itself shows it: photon transfer in its flattest places.
+//! How strong the noise of a capture is, as the picture itself shows it: photon transfer in its flattest places.
 //!
 //! In small windows the variance of each of the four planes of the mosaic is measured by a mask that sees neither shading nor
 //! straight edges (J. Immerkaer, "Fast noise variance estimation", Computer Vision and Image Understanding 64(2), 1996).
@@ -15,6 +15,7 @@ use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Capture, Layout, Rect};
 use rayon::prelude::*;
 
+use super::any::Array;
 use super::block;
 use super::model::{Line, NoiseModel};
 use crate::light::{LinearLight, layout_from};
@@ -64,16 +65,22 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, limits: [f32; 3])
     let Layout::Cfa(cfa) = layout_from(capture.counts.layout(), area.x as isize, area.y as isize) else {
         return None;
     };
-    if !cfa.is_bayer() {
-        return None;
-    }
-    let channels = block(&cfa);
+    let array = Array::of(&cfa);
+    // Planes of an array other than Bayer's: red, the greens of even and of odd rows, blue.
+    let channels = match &array {
+        Some(_) => [0, 1, 1, 2],
+        None if cfa.is_bayer() => block(&cfa),
+        None => return None,
+    };
     let rows = area.height / WINDOW;
     let step = (rows * (area.width / WINDOW)).div_ceil(MOST_WINDOWS).max(1);
     let rows: Vec<usize> = (0..rows).step_by(step).collect();
     let limits = channels.map(|c| NEARLY_CLIPPED * limits[c]);
-    let windows: Vec<[Seen; 4]> =
-        rows.par_iter().flat_map_iter(|row| strip(capture, light, area, row * WINDOW, limits)).collect();
+    let strip = |row: &usize| match &array {
+        Some(array) => strip_of_any(capture, light, array, row * WINDOW, limits),
+        None => strip(capture, light, area, row * WINDOW, limits),
+    };
+    let windows: Vec<[Seen; 4]> = rows.par_iter().flat_map_iter(strip).collect();
     if windows.len() < FEWEST_WINDOWS {
         return None;
     }
@@ -180,6 +187,53 @@ fn strip(capture: &Capture, light: &LinearLight, area: Rect, top: usize, limits:
         (!clips).then_some(seen)
     };
     (0..columns).filter_map(window).collect()
+}
+
+/// The same for arrays other than Bayer's, from departures of samples from the mean of their colour around them.
+fn strip_of_any(
+    capture: &Capture,
+    light: &LinearLight,
+    array: &Array,
+    top: usize,
+    limits: [f32; 4],
+) -> Vec<[Seen; 4]> {
+    let area = capture.active_area;
+    let width = area.width;
+    let mut samples = vec![0f32; width * WINDOW];
+    for (y, row) in samples.chunks_exact_mut(width).enumerate() {
+        light.levelled(&capture.counts, area.x, area.y + top + y, row);
+    }
+    let mut departures = vec![0f32; samples.len()];
+    array.departures(&samples, width, (0, top as isize), &mut departures);
+    let window = |i: usize| {
+        let mut seen = [Seen::default(); 4];
+        let (mut counts, mut inner, mut clips) = ([0f32; 4], [0f32; 4], false);
+        for y in 0..WINDOW {
+            for x in i * WINDOW..(i + 1) * WINDOW {
+                let phase = (top + y) % array.period.1 * array.period.0 + x % array.period.0;
+                let plane = match array.places[phase].channel {
+                    0 => 0,
+                    1 => 1 + y % 2,
+                    _ => 3,
+                };
+                let at = y * width + x;
+                seen[plane].light += samples[at];
+                counts[plane] += 1.0;
+                clips |= samples[at] >= limits[plane];
+                // Three rows and columns away from the edges of the strip departures are known.
+                if (3..WINDOW - 3).contains(&y) && (3..width - 3).contains(&x) {
+                    seen[plane].variance += departures[at] * departures[at];
+                    inner[plane] += 1.0;
+                }
+            }
+        }
+        for (seen, (count, inner)) in seen.iter_mut().zip(counts.into_iter().zip(inner)) {
+            seen.light /= count.max(1.0);
+            seen.variance /= inner.max(1.0);
+        }
+        (!clips).then_some(seen)
+    };
+    (0..width / WINDOW).filter_map(window).collect()
 }
 
 /// Flat windows of similar light.

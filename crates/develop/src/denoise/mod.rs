@@ -21,6 +21,7 @@
 pub mod model;
 pub use model::{Line, NoiseModel};
 
+mod any;
 mod bayer;
 mod coarse;
 mod measure;
@@ -73,10 +74,12 @@ pub(crate) struct Asked {
     pub(crate) mends: Arc<Mends>,
 }
 
-/// The filter for one Bayer capture.
+/// The filter for one capture.
 #[derive(Debug)]
 pub(crate) struct Denoiser {
     pub(crate) asked: Asked,
+    /// What serves in place of the rest for arrays other than Bayer's.
+    any: Option<any::Filter>,
     /// Of the samples of a block of 2 x 2, row by row from the active area's corner on.
     stabilisers: [Stabiliser; 4],
     limits: [f32; 4],
@@ -88,19 +91,30 @@ pub(crate) struct Denoiser {
 }
 
 impl Denoiser {
-    /// The filter for a capture; `None` where it is of no use: for sensors other than Bayer, or at no strength.
+    /// The filter for a capture; `None` where it is of no use: for sensors without filters, or at no strength.
     pub(crate) fn of(capture: &Capture, asked: Asked) -> Option<Self> {
         let area = capture.active_area;
         let layout = layout_from(capture.counts.layout(), area.x as isize, area.y as isize);
         let Layout::Cfa(cfa) = layout else { return None };
         let Strength { luma, chroma } = asked.strength;
-        if !cfa.is_bayer() || luma <= 0.0 && chroma <= 0.0 || area.width < 4 || area.height < 4 {
+        if luma <= 0.0 && chroma <= 0.0 || area.width < 4 || area.height < 4 {
+            return None;
+        }
+        let any = any::Array::of(&cfa).map(|array| any::Filter {
+            array,
+            stabilisers: asked.model.channels.map(Stabiliser::of),
+            limits: asked.limits,
+            // Colours are not parted into brightness and differences.
+            strength: luma,
+        });
+        if any.is_none() && !cfa.is_bayer() {
             return None;
         }
         let channels = block(&cfa);
         let stabilisers = channels.map(|c| Stabiliser::of(asked.model.channels[c]));
         let grey = [0, 1, 2, 3].map(|i| stabilisers[i].slope_of_grey(asked.multipliers[channels[i]]));
         Some(Self {
+            any,
             stabilisers,
             limits: channels.map(|c| asked.limits[c]),
             rotation: Rotation::with_grey(grey, channels),
@@ -125,6 +139,9 @@ impl Denoiser {
         if let Some(coarse) = &*known() {
             return Ok(Arc::clone(coarse));
         }
+        if self.any.is_some() {
+            return Ok(Arc::new(Coarse::none()));
+        }
         let found = Arc::new(Coarse::of(self, capture, light, cancel)?);
         *known() = Some(Arc::clone(&found));
         Ok(found)
@@ -138,6 +155,9 @@ impl Denoiser {
     pub(crate) fn left(&self) -> f32 {
         let Strength { luma, chroma } = self.asked.strength;
         let kept = |s: f32| (1.0 - shrink::removed(shrink::threshold(1.0, s), 1.0)).powi(2);
+        if self.any.is_some() {
+            return 1.0;
+        }
         // Of the four planes three are colour.
         (kept(luma) + 3.0 * kept(chroma)) / 4.0
     }
@@ -150,7 +170,10 @@ impl Denoiser {
         rect: Rect,
         scratch: &mut Scratch,
     ) {
-        bayer::denoise(self, self.source(capture, light), coarse, rect, scratch);
+        match &self.any {
+            Some(any) => any.denoise(self.source(capture, light), rect, scratch),
+            None => bayer::denoise(self, self.source(capture, light), coarse, rect, scratch),
+        }
     }
 }
 

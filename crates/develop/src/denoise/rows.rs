@@ -3,7 +3,7 @@
 use darkroot_photo::{Capture, Rect};
 
 use super::Denoiser;
-use crate::light::LinearLight;
+use crate::light::{LinearLight, period};
 use crate::mend::Mends;
 use crate::tile::inside;
 
@@ -22,10 +22,12 @@ impl Source<'_> {
         self.mends.row(x, y, out);
     }
 
-    /// The light of row `y` from column `x` on, both counted from the active area's corner; beyond it the area is mirrored.
+    /// The light of row `y` from column `x` on, both counted from the active area's corner; beyond it the area goes on as a
+    /// tile does.
     pub(super) fn row(&self, x: isize, y: isize, out: &mut [f32]) {
         let Rect { x: left, y: top, width, height } = self.capture.active_area;
-        let y = inside(y + top as isize, top, height, 2);
+        let period = period(self.capture.counts.layout());
+        let y = inside(y + top as isize, top, height, period.1);
         // Places of the row that lie inside.
         let place = |column: usize| (column as isize - x).clamp(0, out.len() as isize) as usize;
         let straight = place(0)..place(width);
@@ -34,7 +36,7 @@ impl Source<'_> {
             self.levelled(begin, y, &mut out[straight.clone()]);
         }
         for i in (0..straight.start).chain(straight.end..out.len()) {
-            let at = inside(x + i as isize + left as isize, left, width, 2);
+            let at = inside(x + i as isize + left as isize, left, width, period.0);
             let mirrored = usize::try_from(at as isize - left as isize - x).ok();
             if let Some(mirrored) = mirrored.filter(|place| straight.contains(place)) {
                 out[i] = out[mirrored];

@@ -182,7 +182,7 @@ fn the_noise_that_was_added_is_measured() {
 }
 
 #[test]
-fn no_sensor_but_bayer_and_no_strength_of_0_have_a_filter() {
+fn a_strength_of_0_has_no_filter() {
     let capture = Arc::new(capture("RGGB", Size { width: 16, height: 16 }, 1, |_, _| 0.1));
     let asked = Asked {
         model: model(),
@@ -192,4 +192,38 @@ fn no_sensor_but_bayer_and_no_strength_of_0_have_a_filter() {
         mends: Arc::default(),
     };
     assert!(Denoiser::of(&capture, asked).is_none());
+}
+
+const X_TRANS: &str = "GBGGRG RGRBGB GBGGRG GRGGBG BGBRGR GRGGBG";
+
+#[test]
+fn x_trans_loses_noise_keeps_means_and_has_no_seams() {
+    let size = Size { width: 301, height: 203 };
+    let mut noisy = capture(X_TRANS, size, 13, |_, _| 0.05);
+    noisy.active_area = Rect { x: 1, y: 2, width: 299, height: 200 };
+    let filter = filter(&noisy, 1.0);
+    let whole = denoised(&filter, &noisy, noisy.active_area);
+    let Counts::F32(mosaic) = &noisy.counts else { panic!() };
+    let mean = |v: &[f32]| v.iter().map(|v| f64::from(*v)).sum::<f64>() / v.len() as f64;
+    assert!((mean(&whole) / mean(&mosaic.samples) - 1.0).abs() < 1e-3);
+    let variance = mean(&whole.iter().map(|v| (v - 0.05f32).powi(2)).collect::<Vec<_>>());
+    assert!(variance < 0.25 * f64::from(LINE.at(0.05)), "{}", variance / f64::from(LINE.at(0.05)));
+    let rect = Rect { x: 97, y: 55, width: 31, height: 18 };
+    for (y, row) in denoised(&filter, &noisy, rect).chunks_exact(rect.width).enumerate() {
+        let start = (rect.y - 2 + y) * 299 + rect.x - 1;
+        assert_eq!(row, &whole[start..start + rect.width], "row {y}");
+    }
+}
+
+#[test]
+fn the_noise_under_x_trans_is_measured() {
+    let ramp = |x: usize, _: usize| 0.7 * x as f32 / 900.0;
+    let capture = capture(X_TRANS, Size { width: 900, height: 600 }, 29, ramp);
+    let measured = super::measured(&capture, &LinearLight::of(&capture), [1.0; 3]).unwrap();
+    for line in measured.model.channels {
+        for light in [0.02, 0.1, 0.6] {
+            let ratio = line.at(light) / LINE.at(light);
+            assert!((ratio - 1.0).abs() < 0.25, "{light}: {ratio}");
+        }
+    }
 }
