@@ -144,11 +144,11 @@ impl Filter {
         for y in border..height - border {
             hat(narrow_row(y - 1), narrow_row(y), narrow_row(y + 1), &mut down);
             hat_along(&down, 1, &mut line);
-            for x in border..width - border {
+            for (x, power) in line.iter().enumerate().take(width - border).skip(border) {
                 let at = y * width + x;
                 let place = self.array.place(corner.0 + x as isize, corner.1 + y as isize);
                 if mosaic[at] < self.limits[place.channel] {
-                    let share = removed(threshold, line[x]);
+                    let share = removed(threshold, *power);
                     let root = roots[at] - share * place.departure.sqrt() * departures[at];
                     let gone = 1.0 - Array::left(place, share);
                     mosaic[at] = self.stabilisers[place.channel].light(root, gone);
