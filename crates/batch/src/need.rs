@@ -39,11 +39,13 @@ pub(crate) fn develop(
     // flashraw gives 16-bit counts; floating point is kept as such.
     let counts = samples * if float { 4 } else { 2 };
     let decode = file + 2 * counts;
+    // Noise of the coarse scales, and what it is looked for in.
+    let noise = 2 * pixels;
     if format.takes_bands() && settings.engine == Engine::Darkroot {
         // A few bands of rows, and what they became.
-        return WORKER + THREAD + decode.max(counts + picture / 16);
+        return WORKER + THREAD + decode.max(counts + noise + picture / 16);
     }
-    let render = counts + picture;
+    let render = counts + noise + picture;
     let encode = picture + encoder(format, bits, picture, pixels);
     WORKER + THREAD + decode.max(render).max(encode)
 }

@@ -1,11 +1,13 @@
 //! What a capture itself tells, whatever is asked of it later: each question is answered once, when it is first asked.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use darkroot_photo::Capture;
+use darkroot_photo::{Capture, Counts};
 
 use crate::auto_white::Seen;
+use crate::denoise::{self, Asked, Denoiser, Measured, NoiseModel};
 use crate::light::LinearLight;
+use crate::mend::Mends;
 use crate::noise::{self, Window};
 use crate::survey::{self, Survey};
 use crate::white::CameraMatrix;
@@ -19,6 +21,9 @@ pub struct Analysis {
     matrix: Option<CameraMatrix>,
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
+    samples_noise: OnceLock<Option<Measured>>,
+    mends: OnceLock<Arc<Mends>>,
+    denoiser: Mutex<Option<Arc<Denoiser>>>,
     colours: OnceLock<Option<Seen>>,
 }
 
@@ -31,6 +36,9 @@ impl Analysis {
             capture,
             survey: OnceLock::new(),
             noise: OnceLock::new(),
+            samples_noise: OnceLock::new(),
+            mends: OnceLock::new(),
+            denoiser: Mutex::new(None),
             colours: OnceLock::new(),
         }
     }
@@ -70,6 +78,44 @@ impl Analysis {
     /// Camera RGB of the light's white as the picture makes it most probable; `None` where too little of it is usable.
     pub fn estimated_neutral(&self, whites: &Whites<'_>) -> Option<[f64; 3]> {
         self.colours().map(|seen| seen.neutral(whites))
+    }
+
+    /// How strong the noise of samples is, by their light: as the file says, else as the picture shows. `None` where there
+    /// is none to speak of, or nothing tells it.
+    pub fn noise_model(&self) -> Option<NoiseModel> {
+        let measured = self.measured_noise()?;
+        let model = NoiseModel::from_profile(&self.capture.noise_profile).unwrap_or(measured.model);
+        let step = match self.capture.counts {
+            Counts::U16(_) => 1.0 / self.capture.white.0.iter().fold(f32::MIN_POSITIVE, |a, &b| a.max(b)),
+            // Nobody tells light apart that 16 bits do not.
+            Counts::F32(_) => 1.0 / 65535.0,
+        };
+        (!model.is_clean(measured.mean, step)).then_some(model)
+    }
+
+    fn measured_noise(&self) -> Option<&Measured> {
+        let measured = || denoise::measured(&self.capture, &self.light, self.survey().saturation);
+        self.samples_noise.get_or_init(measured).as_ref()
+    }
+
+    /// What is to be put right in single samples; nothing in a clean picture.
+    pub(crate) fn mends(&self) -> &Arc<Mends> {
+        let found = || {
+            let (model, measured) = (self.noise_model()?, self.measured_noise()?);
+            Some(Mends::of(&self.capture, &self.light, &model, measured))
+        };
+        self.mends.get_or_init(|| Arc::new(found().unwrap_or_default()))
+    }
+
+    /// The filter for noise: the last one, with what it knows of the frame, where the same is asked for again.
+    pub(crate) fn denoiser(&self, asked: Asked) -> Option<Arc<Denoiser>> {
+        let mut last = self.denoiser.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(last) = last.as_ref().filter(|last| last.asked == asked) {
+            return Some(Arc::clone(last));
+        }
+        let filter = Arc::new(Denoiser::of(&self.capture, asked)?);
+        *last = Some(Arc::clone(&filter));
+        Some(filter)
     }
 
     /// Windows in which noise shows; none for other sensors than Bayer.

@@ -3,7 +3,7 @@
 //! ```text
 //! plan    looks at the whole capture once: white, highlights, exposure
 //! render  cuts the picture into tiles and runs the stages over each, in parallel:
-//!         level -> corrections -> balance -> highlights -> demosaic -> corrections
+//!         level -> denoise -> corrections -> balance -> highlights -> demosaic -> corrections
 //!         -> correct (profile) -> exposure -> tone -> gamut -> transfer
 //! ```
 //!
@@ -17,7 +17,10 @@
 #![cfg_attr(test, allow(clippy::float_cmp))]
 
 pub mod recipe;
-pub use recipe::{Balance, Bits, Crop, Demosaic, Exposure, Highlights, Look, Output, OutputSpace, Recipe};
+pub use recipe::{
+    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Highlights, HotPixels, Look, Output, OutputSpace,
+    Recipe,
+};
 
 pub mod error;
 pub use error::{Error, SpotFault};
@@ -64,10 +67,12 @@ pub mod balance;
 pub mod correct;
 pub mod corrections;
 pub mod demosaic;
+pub mod denoise;
 pub mod exposure;
 pub mod fringe;
 pub mod gamut;
 pub mod highlights;
 pub mod level;
+mod mend;
 pub mod tone;
 pub mod transfer;

@@ -45,6 +45,14 @@ impl Noise {
         self.variances[bin(brightness * self.scale)]
     }
 
+    /// So many times that variance.
+    pub(crate) fn times(mut self, factor: f32) -> Self {
+        for variance in self.variances.iter_mut().flatten() {
+            *variance *= factor;
+        }
+        self
+    }
+
     /// The noise of a capture after balancing with these multipliers, from what its windows show; none where there are
     /// no windows.
     pub(crate) fn of(windows: &[Window], multipliers: [f32; 3]) -> Self {

@@ -10,12 +10,14 @@ use darkroot_profile::{Model, PlaneModel, Profile};
 use crate::analysis::Analysis;
 use crate::corrections::is_supported;
 use crate::demosaic::Method;
+use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
 use crate::gamut::Primaries;
-use crate::highlights::Treatment;
+use crate::highlights::{CLIPPED, Treatment};
 use crate::light::LinearLight;
+use crate::mend::Mends;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Crop, Exposure, Highlights, OutputSpace, Recipe};
+use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
 use crate::survey::Survey;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
@@ -58,6 +60,10 @@ pub struct Plan {
     pub(crate) picture_corrections: Vec<Correction>,
     pub(crate) highlights: Treatment,
     pub(crate) noise: Noise,
+    /// What is put right in single samples.
+    pub(crate) mends: Arc<Mends>,
+    /// What takes noise from the mosaic; `None` for nothing.
+    pub(crate) denoiser: Option<Arc<Denoiser>>,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
@@ -106,6 +112,10 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         OutputSpace::Camera => (RgbSpace::REC2020, TransferCurve::Linear),
     };
     let camera_output = recipe.output.space == OutputSpace::Camera;
+    let measuring = curve.is_none() || camera_output;
+    let mends = mends(analysis, recipe.hot_pixels, measuring);
+    notes.extend(mends.notes());
+    let denoiser = denoiser(analysis, recipe.denoise, measuring, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
     let all = || capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
     for _ in all().filter(|c| !is_applied(c)) {
@@ -123,9 +133,14 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         crop,
         orientation: capture.orientation,
         noise: match demosaic {
-            Method::Lmmse => Noise::of(analysis.noise(), multipliers),
+            Method::Lmmse => {
+                let left = denoiser.as_ref().map_or(1.0, |filter| filter.left());
+                if left > 0.0 { Noise::of(analysis.noise(), multipliers).times(left) } else { Noise::NONE }
+            }
             _ => Noise::NONE,
         },
+        mends,
+        denoiser,
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
             _ if camera_output => Treatment::Keep,
@@ -143,6 +158,33 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         space: recipe.output.space,
         bits: recipe.output.bits,
     })
+}
+
+/// What is put right in single samples. A measurement gets them as they are.
+fn mends(analysis: &Analysis, hot_pixels: HotPixels, measuring: bool) -> Arc<Mends> {
+    match hot_pixels {
+        _ if measuring || analysis.capture().rendered => Arc::default(),
+        HotPixels::Auto => Arc::clone(analysis.mends()),
+        HotPixels::Off => Arc::new(analysis.mends().without_pixels()),
+    }
+}
+
+/// What takes away noise: as much as is asked for, or as suits the look.
+fn denoiser(
+    analysis: &Analysis,
+    asked: Denoise,
+    measuring: bool,
+    multipliers: [f32; 3],
+    mends: &Arc<Mends>,
+) -> Option<Arc<Denoiser>> {
+    let amount = asked.amount.unwrap_or(if measuring { 0.0 } else { 1.0 });
+    let strength = Strength { luma: amount * asked.luma, chroma: amount * asked.chroma };
+    if analysis.capture().rendered || strength.luma <= 0.0 && strength.chroma <= 0.0 {
+        return None;
+    }
+    let model = analysis.noise_model()?;
+    let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
+    analysis.denoiser(Asked { model, multipliers, strength, limits, mends: Arc::clone(mends) })
 }
 
 /// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another

@@ -9,6 +9,10 @@ pub struct Recipe {
     pub balance: Balance,
     /// What becomes of clipped highlights.
     pub highlights: Highlights,
+    /// What becomes of hot and dead pixels.
+    pub hot_pixels: HotPixels,
+    /// How much noise is taken away.
+    pub denoise: Denoise,
     /// How missing colours are interpolated.
     pub demosaic: Demosaic,
     /// Brightness.
@@ -62,6 +66,33 @@ pub enum Highlights {
     Clip,
     /// Nothing: values stay as the sensor gave them, which tints clipped areas. For measurement.
     Keep,
+}
+
+/// What becomes of pixels that are hot or dead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum HotPixels {
+    /// They take the light of those around them; in the linear look and in camera RGB they stay.
+    #[default]
+    Auto,
+    /// They stay.
+    Off,
+}
+
+/// How much noise is taken away before interpolation: shares of what the noise model expects.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Denoise {
+    /// Of all; `None` for what suits the look: all of it, in the linear look none.
+    pub amount: Option<f32>,
+    /// Of brightness, times `amount`.
+    pub luma: f32,
+    /// Of colour, times `amount`.
+    pub chroma: f32,
+}
+
+impl Default for Denoise {
+    fn default() -> Self {
+        Self { amount: None, luma: 1.0, chroma: 1.0 }
+    }
 }
 
 /// How missing colours of a mosaic are interpolated.

@@ -1,11 +1,12 @@
 //! Runs the stages over tiles, in parallel, and puts the finished tiles upright into bands of one picture.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use darkroot_photo::{CameraSpace, Mosaic, Picture, PictureSpace, Rect, Rgb, Samples, Size};
 
 use crate::demosaic::reduce::{self, Reduction};
 use crate::demosaic::{self, Method, debias};
+use crate::denoise::{self, Coarse, Denoiser};
 use crate::finish::Finish;
 use crate::grid::Grid;
 use crate::highlights::{self, Treatment};
@@ -13,7 +14,7 @@ use crate::in_turn::in_turn;
 use crate::plan::Plan;
 use crate::recipe::{Bits, OutputSpace};
 use crate::stage::{Stage, tile_border};
-use crate::tile::tile;
+use crate::tile::{Levelled, covered, tile};
 use crate::transfer::Sample;
 use crate::view::{Cancel, Cancelled, Scale, View};
 use crate::{corrections, fringe};
@@ -49,7 +50,7 @@ impl Plan {
         columns: usize,
         rows: usize,
     ) -> Result<Picture, Cancelled> {
-        let render = Render::of(self, view, cancel, columns);
+        let render = Render::of(self, view, cancel, columns)?;
         let samples = match self.bits {
             Bits::Eight => Samples::U8(render.picture(rows)?),
             Bits::Sixteen => Samples::U16(render.picture(rows)?),
@@ -71,7 +72,7 @@ impl Plan {
         rows: usize,
         take: impl Fn(usize, &[T]) -> Result<(), E> + Sync,
     ) -> Result<(), E> {
-        let render = Render::of(self, view, cancel, TILE_COLUMNS.div_ceil(view.scale.bin()));
+        let render = Render::of(self, view, cancel, TILE_COLUMNS.div_ceil(view.scale.bin()))?;
         let failure = Mutex::new(None);
         // Inside there is one type of error only, so that the stages are compiled once.
         let rendered = T::render(&render, rows, &|band, samples| {
@@ -124,36 +125,43 @@ pub struct Render<'a> {
     reduction: Option<Reduction>,
     rect: Rect,
     columns: usize,
+    /// What takes away noise, with that of the coarse scales.
+    denoiser: Option<(&'a Denoiser, Arc<Coarse>)>,
     cancel: &'a Cancel,
 }
 
 /// What a thread works in, kept from one tile to the next.
 struct Scratch<T> {
+    denoised: denoise::Scratch,
     mosaic: Mosaic<f32>,
     camera: Rgb<CameraSpace>,
     finish: Finish<T>,
 }
 
 impl<'a> Render<'a> {
-    fn of(plan: &'a Plan, view: View, cancel: &'a Cancel, columns: usize) -> Self {
+    fn of(plan: &'a Plan, view: View, cancel: &'a Cancel, columns: usize) -> Result<Self, Cancelled> {
         let nothing = Rect { width: 0, height: 0, ..view.rect };
         let rect = view.rect.intersection(plan.whole(view.scale).rect).unwrap_or(nothing);
         let layout = plan.capture.counts.layout();
-        Self {
+        let coarse =
+            |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&plan.capture, &plan.light, cancel)?));
+        Ok(Self {
             plan,
             grid: Grid::of(plan, view.scale),
             border: tile_border(plan.changes(), &plan.readers(view.scale)),
             reduction: (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout)),
             rect,
             columns: columns.clamp(1, rect.width.max(1)),
+            denoiser: plan.denoiser.as_ref().map(coarse).transpose()?,
             cancel,
-        }
+        })
     }
 
     fn scratch<T: Sample>(&self) -> Scratch<T> {
         let nothing = Size { width: 0, height: 0 };
         let layout = self.plan.capture.counts.layout().clone();
         Scratch {
+            denoised: denoise::Scratch::default(),
             mosaic: Mosaic { size: nothing, layout, samples: Vec::new() },
             camera: Rgb::black(nothing),
             finish: Finish::new(),
@@ -202,11 +210,22 @@ impl<'a> Render<'a> {
     /// The pipeline down to camera RGB, for one rectangle of the grid.
     fn neighbourhood_stages<T>(&self, rect: Rect, scratch: &mut Scratch<T>) {
         let (plan, border, bin) = (self.plan, self.border, self.grid.bin);
-        let Scratch { mosaic, camera, .. } = scratch;
+        let Scratch { denoised, mosaic, camera, .. } = scratch;
         let (x, y) = self.grid.corner(rect);
         let size = Size { width: rect.width * bin + 2 * border, height: rect.height * bin + 2 * border };
         let begin = (x - border as isize, y - border as isize);
-        tile(&plan.capture, &plan.light, plan.multipliers, begin, size, mosaic);
+        let (capture, light) = (&*plan.capture, &*plan.light);
+        let levelled: &Levelled<'_> = match &self.denoiser {
+            None => &|x, y, row| {
+                light.levelled(&capture.counts, x, y, row);
+                plan.mends.row(x, y, row);
+            },
+            Some((filter, coarse)) => {
+                filter.denoise((capture, light), coarse, covered(capture, begin, size), denoised);
+                &|x, y, row| denoised.row(x, y, row)
+            }
+        };
+        tile(capture, (light, levelled), plan.multipliers, begin, size, mosaic);
         highlights::treat(mosaic, &plan.highlights);
         match &self.reduction {
             Some(reduction) => reduction.reduce(mosaic, border, bin, begin, camera),

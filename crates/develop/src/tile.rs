@@ -3,16 +3,19 @@
 //! Beyond the active area the mosaic is continued: mirrored for Bayer (which keeps the phase of its 2x2 block),
 //! shifted by whole periods for larger arrays.
 
-use darkroot_photo::{Capture, Mosaic, Size};
+use darkroot_photo::{Capture, Mosaic, Rect, Size};
 
 use crate::balance;
 use crate::light::{LinearLight, layout_from, period};
 
+/// Gives the levelled light of row `y` of the frame from column `x` on.
+pub(crate) type Levelled<'a> = dyn Fn(usize, usize, &mut [f32]) + 'a;
+
 /// Makes `tile` the linear, corrected, balanced samples of a rectangle whose top left corner lies in column `x` of row `y`
-/// of the frame; it may reach beyond the active area on all sides.
+/// of the frame; it may reach beyond the active area on all sides. Their light before corrections is what `levelled` says.
 pub(crate) fn tile(
     capture: &Capture,
-    linear: &LinearLight,
+    (linear, levelled): (&LinearLight, &Levelled<'_>),
     multipliers: [f32; 3],
     (x, y): (isize, isize),
     size: Size,
@@ -35,7 +38,8 @@ pub(crate) fn tile(
     for (i, out) in tile.samples.chunks_exact_mut(size.width * planes).enumerate() {
         let y = inside(y + i as isize, area.y, area.height, period.1);
         let row = if straight { &mut *out } else { &mut light };
-        linear.row(&capture.counts, first, y, row);
+        levelled(first, y, row);
+        linear.correct(first, y, row);
         balance::row(row, stored, multipliers, first, y);
         if !straight {
             for (pixel, &x) in out.chunks_exact_mut(planes).zip(&columns) {
@@ -45,8 +49,22 @@ pub(crate) fn tile(
     }
 }
 
+/// The rectangle of the active area whose samples a tile is made of.
+pub(crate) fn covered(capture: &Capture, (x, y): (isize, isize), size: Size) -> Rect {
+    let area = capture.active_area;
+    let period = period(capture.counts.layout());
+    let span = |at: isize, count: usize, start: usize, length: usize, period: usize| {
+        let inside = (0..count as isize).map(|i| inside(at + i, start, length, period));
+        let least = inside.clone().min().unwrap_or(start);
+        (least, inside.max().map_or(0, |most| most + 1 - least))
+    };
+    let (x, width) = span(x, size.width, area.x, area.width, period.0);
+    let (y, height) = span(y, size.height, area.y, area.height, period.1);
+    Rect { x, y, width, height }
+}
+
 /// The column (row) inside an area that stands for column `at`; `start` and `length` are the area's.
-fn inside(at: isize, start: usize, length: usize, period: usize) -> usize {
+pub(crate) fn inside(at: isize, start: usize, length: usize, period: usize) -> usize {
     // Distance from the area's start.
     let mut d = at - start as isize;
     let (length, period) = (length as isize, period as isize);

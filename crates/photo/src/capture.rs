@@ -97,6 +97,9 @@ pub struct Capture {
     pub analog_balance: [f64; 3],
     /// Stops by which the maker brightens the picture (DNG BaselineExposure).
     pub baseline_exposure: f64,
+    /// Variance of noise as the maker knows it (DNG NoiseProfile): factor of the linear light and constant, for all
+    /// channels or for each; empty where the file does not say.
+    pub noise_profile: Vec<[f64; 2]>,
     /// Corrections on linear samples before demosaicing (DNG OpcodeList2).
     pub mosaic_corrections: Vec<Correction>,
     /// Corrections on demosaiced camera RGB (DNG OpcodeList3).
@@ -131,6 +134,7 @@ impl Capture {
             calibrations: Vec::new(),
             analog_balance: [1.0; 3],
             baseline_exposure: 0.0,
+            noise_profile: Vec::new(),
             mosaic_corrections: Vec::new(),
             picture_corrections: Vec::new(),
             metadata: Metadata::default(),

@@ -319,6 +319,7 @@ fn describe(
             .and_then(|d| d.baseline_exposure)
             .unwrap_or(0.0)
             .clamp(-10.0, 10.0),
+        noise_profile: noise_profile(meta),
         mosaic_corrections,
         picture_corrections,
         metadata,
@@ -330,6 +331,12 @@ fn describe(
         },
         notes,
     })
+}
+
+/// Pairs of DNG NoiseProfile, as many as are whole.
+fn noise_profile(meta: &RawMetadata) -> Vec<[f64; 2]> {
+    let numbers = meta.dng.as_ref().and_then(|d| d.noise_profile.as_deref()).unwrap_or_default();
+    numbers.as_chunks().0.to_vec()
 }
 
 /// What flashraw says of OpcodeList1, which it applies itself: only what it left out.

@@ -143,3 +143,16 @@ fn a_real_floating_point_jpeg_xl_decodes_to_what_adobe_s_kit_gives() {
     assert!((mean - 152.5335).abs() < 1e-3, "{mean}");
     assert!(capture.notes.iter().any(|n| n.contains("transparency mask")), "{:?}", capture.notes);
 }
+
+#[test]
+#[cfg_attr(not(has_raw_files), ignore = "needs `raw` in DARKROOT_DATA")]
+fn noise_profiles_are_read() {
+    let profile = |name: &str| {
+        let bytes = read(&data("raw").join(name));
+        header(&bytes, &Limits::default()).unwrap().noise_profile
+    };
+    let [[slope, floor]] = profile("gopro_hero7_vc5_gainmap.gpr")[..] else { panic!("one pair") };
+    assert!((slope - 3.936e-4).abs() < 1e-7 && (floor - 1.2298e-7).abs() < 1e-11, "{slope:e} {floor:e}");
+    assert_eq!(profile("nikon_d500_adobe_lossy_black.dng").len(), 3);
+    assert!(profile("nikon_d1_uncompressed12.nef").is_empty());
+}

@@ -128,6 +128,7 @@ pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
         analog_balance: [1.0; 3],
         baseline_exposure: 0.0,
         mosaic_corrections: Vec::new(),
+        noise_profile: Vec::new(),
         picture_corrections: Vec::new(),
         metadata: exposure.metadata.clone(),
         source: Source {

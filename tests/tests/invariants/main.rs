@@ -6,6 +6,7 @@
 mod black_level;
 mod corrections;
 mod crop;
+mod denoise;
 mod exposure;
 mod grey;
 mod highlights;

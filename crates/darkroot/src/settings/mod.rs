@@ -211,6 +211,8 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
         ("exposure", recipe.exposure == fixed.exposure),
         ("white-balance", recipe.balance == fixed.balance),
         ("highlights", recipe.highlights == fixed.highlights),
+        ("hot-pixels", recipe.hot_pixels == fixed.hot_pixels),
+        ("denoise", recipe.denoise == fixed.denoise),
         ("demosaic", recipe.demosaic == fixed.demosaic),
         ("crop", recipe.crop == fixed.crop),
     ];

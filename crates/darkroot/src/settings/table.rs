@@ -3,13 +3,13 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
-use darkroot_develop::{Balance, Bits, Crop, Demosaic, Highlights, Look};
+use darkroot_develop::{Balance, Bits, Crop, Demosaic, Highlights, HotPixels, Look};
 use darkroot_encode::{ChromaSubsampling, Format};
 use darkroot_raw::Decoder;
 
 use super::Engine;
 use super::setting::{Changes, Group, Kind, Setting, Word};
-use super::text::{NotAValue, balance, light, number, one_of, profile, space};
+use super::text::{NotAValue, balance, denoise, light, number, one_of, profile, space};
 
 const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
     Word { word, also: "", value, help }
@@ -66,6 +66,10 @@ pub(super) const HIGHLIGHTS: [Word<Highlights>; 3] = [
     word("clip", Highlights::Clip, "Cut all channels where the first one clips"),
     word("keep", Highlights::Keep, "Leave the values as they are"),
 ];
+pub(super) const HOT_PIXELS: [Word<HotPixels>; 2] = [
+    word(AUTO, HotPixels::Auto, "They take the light of those around them; stars stay"),
+    word("off", HotPixels::Off, "They stay"),
+];
 pub(super) const DEMOSAIC: [Word<Demosaic>; 2] = [
     word("best", Demosaic::Best, "The best for the sensor"),
     word("bilinear", Demosaic::Bilinear, "Fast and soft"),
@@ -86,7 +90,7 @@ fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 17] = [
+pub const SETTINGS: [Setting; 21] = [
     Setting {
         name: "format",
         alias: None,
@@ -216,6 +220,55 @@ pub const SETTINGS: [Setting; 17] = [
         help: "What becomes of clipped highlights (the linear look keeps them unless clip is asked for)",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.highlights, one_of(&HIGHLIGHTS, text)),
+    },
+    Setting {
+        name: "hot-pixels",
+        alias: None,
+        noun: "way with hot pixels",
+        kind: Kind::Words(const { &plain(&HOT_PIXELS) }),
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "",
+        help: "What becomes of hot and dead pixels (the linear look and camera RGB keep them)",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.hot_pixels, one_of(&HOT_PIXELS, text)),
+    },
+    Setting {
+        name: "denoise",
+        alias: None,
+        noun: "amount of denoising",
+        kind: Kind::Text { form: "auto, off, or a number from 0 to 2", example: "\"off\" or \"0.5\"" },
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "AMOUNT",
+        help: "Noise taken away before interpolation: auto (all that was measured; none in the linear look and in camera \
+               RGB), off, or so many times that, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.denoise.amount, denoise(text)),
+    },
+    Setting {
+        name: "denoise-luma",
+        alias: None,
+        noun: "share of denoising",
+        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
+        default: "1",
+        group: Group::Picture,
+        placeholder: "SHARE",
+        help: "Share of it for noise of brightness, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.denoise.luma, number(text).map(|n| n as f32)),
+    },
+    Setting {
+        name: "denoise-chroma",
+        alias: None,
+        noun: "share of denoising",
+        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
+        default: "1",
+        group: Group::Picture,
+        placeholder: "SHARE",
+        help: "Share of it for noise of colour, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.denoise.chroma, number(text).map(|n| n as f32)),
     },
     Setting {
         name: "demosaic",

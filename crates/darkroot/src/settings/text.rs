@@ -123,6 +123,21 @@ pub fn space(text: &str) -> Result<OutputSpace, NotAValue> {
     })
 }
 
+/// An amount of denoising: auto (`None`), off, or a number from 0 to 2.
+///
+/// # Errors
+/// It is none.
+pub fn denoise(text: &str) -> Result<Option<f32>, NotAValue> {
+    match text {
+        AUTO => Ok(None),
+        "off" => Ok(Some(0.0)),
+        _ => match number(text) {
+            Ok(amount) if (0.0..=2.0).contains(&amount) => Ok(Some(amount as f32)),
+            _ => Err(NotAValue::plain(text, "amount of denoising", "auto, off, or a number from 0 to 2")),
+        },
+    }
+}
+
 /// A white balance: as-shot, daylight, auto, `5200K`, `5200K,+8`, `spot:X,Y[,SIDE]` or `R,G,B`.
 ///
 /// # Errors
