@@ -1,10 +1,11 @@
 //! What a capture itself tells, whatever is asked of it later: each question is answered once, when it is first asked.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use darkroot_photo::Capture;
 
 use crate::auto_white::Seen;
+use crate::clipped_colours::ClippedColours;
 use crate::light::LinearLight;
 use crate::noise::{self, Window};
 use crate::survey::{self, Survey};
@@ -20,6 +21,8 @@ pub struct Analysis {
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
     colours: OnceLock<Option<Seen>>,
+    /// For the multipliers that were asked for last: a person who drags another setting keeps them.
+    clipped: Mutex<Option<([f32; 3], Arc<ClippedColours>)>>,
 }
 
 impl Analysis {
@@ -32,6 +35,7 @@ impl Analysis {
             survey: OnceLock::new(),
             noise: OnceLock::new(),
             colours: OnceLock::new(),
+            clipped: Mutex::new(None),
         }
     }
 
@@ -59,7 +63,7 @@ impl Analysis {
 
     /// Light of small blocks, and where channels clip.
     pub fn survey(&self) -> &Survey {
-        self.survey.get_or_init(|| survey::survey(&self.capture, &self.light))
+        self.survey.get_or_init(|| survey::survey(&self.capture, &self.light, || self.noise()))
     }
 
     /// Colours that tell of the light; `None` where too little of the picture is usable.
@@ -70,6 +74,23 @@ impl Analysis {
     /// Camera RGB of the light's white as the picture makes it most probable; `None` where too little of it is usable.
     pub fn estimated_neutral(&self, whites: &Whites<'_>) -> Option<[f64; 3]> {
         self.colours().map(|seen| seen.neutral(whites))
+    }
+
+    /// Colours where the frame is not clipped, balanced, continued into where it is.
+    pub(crate) fn clipped_colours(&self, multipliers: [f32; 3]) -> Arc<ClippedColours> {
+        let mut last = self.clipped.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*last {
+            Some((of, colours)) if of.map(f32::to_bits) == multipliers.map(f32::to_bits) => {
+                Arc::clone(colours)
+            }
+            _ => {
+                let area = self.capture.active_area;
+                let colours = ClippedColours::of(self.survey(), (area.x, area.y), multipliers);
+                let colours = Arc::new(colours);
+                *last = Some((multipliers, Arc::clone(&colours)));
+                colours
+            }
+        }
     }
 
     /// Windows in which noise shows; none for other sensors than Bayer.

@@ -4,6 +4,7 @@
 #![allow(clippy::float_cmp)] // Some facts are about the same bits.
 
 mod black_level;
+mod clipping;
 mod corrections;
 mod crop;
 mod exposure;
@@ -11,6 +12,7 @@ mod grey;
 mod highlights;
 mod hostile;
 mod numbers;
+mod ramps;
 mod tiles;
 mod truth;
 mod views;
