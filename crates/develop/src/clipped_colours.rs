@@ -9,9 +9,11 @@ use crate::highlights::rebuilt;
 use crate::survey::{Block, Survey};
 
 /// Light as a share of clipping below which a block tells nothing.
-const DARK: f32 = 0.25;
+const DARK: f32 = 0.6;
+/// Mean light of a channel, as a share of its limit, that is clipped all over a block.
+const ALL_OVER: f32 = 0.95;
 /// Weight of grey where nothing else is known.
-const NOTHING: f32 = 1e-6;
+const NOTHING: f32 = 3e-4;
 
 /// Balanced colours, mean 1, on a grid over the active area.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,13 +42,14 @@ impl ClippedColours {
         let first = Grid { columns: survey.columns, cells: known.collect() }.continued();
         // Once more, with what the blocks know of which one channel is clipped.
         let known = survey.blocks.iter().zip(&seen).enumerate().map(|(i, (b, seen))| {
-            match b.clipped.iter().filter(|c| **c).count() {
-                0 => weighted(*seen, limits),
-                1 => weighted(
+            let mut channels = (0..3).filter(|&c| b.clipped[c]);
+            match (channels.next(), channels.next()) {
+                // All over: at the edge of a reflex the mean is that of two things.
+                (Some(c), None) if seen[c] > ALL_OVER * limits[c] => weighted(
                     rebuilt(clipped(*seen, b.clipped, limits), limits, first.cells[i].colour()),
                     limits,
                 ),
-                _ => UNKNOWN,
+                _ => whole(b, seen),
             }
         });
         let grid = Grid { columns: survey.columns, cells: known.collect() }.continued();
@@ -129,13 +132,17 @@ impl Grid {
         Self { columns, cells }
     }
 
-    /// Means of four cells; of fewer at the edges.
+    /// Four cells as one, whose weight is their sum, at most 1: what is known is known however large the square.
     fn halved(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows().div_ceil(2));
         let mut cells = vec![UNKNOWN; columns * rows];
         for (i, cell) in self.cells.iter().enumerate() {
             let (x, y) = (i % self.columns / 2, i / self.columns / 2);
-            cells[y * columns + x] = cells[y * columns + x].plus(*cell, 0.25);
+            cells[y * columns + x] = cells[y * columns + x].plus(*cell, 1.0);
+        }
+        for cell in &mut cells {
+            let [.., weight] = cell.0;
+            *cell = UNKNOWN.plus(*cell, 1.0 / weight.max(1.0));
         }
         Self { columns, cells }
     }
@@ -183,7 +190,7 @@ mod tests {
         let colours = ClippedColours::of(&row(&light), (0, 0), [1.0; 3]);
         let wanted = orange(1.0 / 0.6);
         for x in (0..64 * 8).step_by(5) {
-            assert!(close(colours.at(x, 3), wanted, 0.02), "{x}: {:?}", colours.at(x, 3));
+            assert!(close(colours.at(x, 3), wanted, 0.05), "{x}: {:?}", colours.at(x, 3));
         }
     }
 
@@ -207,6 +214,6 @@ mod tests {
         let plain = ClippedColours::of(&row(&[[0.5, 0.2, 0.2]; 4]), (0, 0), [1.0; 3]);
         assert_eq!(plain.at(9, 3), [1.0; 3]);
         let burnt = ClippedColours::of(&row(&[[5.0; 3]; 4]), (0, 0), [1.0; 3]);
-        assert!(close(burnt.at(9, 3), [1.0; 3], 1e-6));
+        assert!(close(burnt.at(9, 3), [1.0; 3], 1e-4));
     }
 }

@@ -33,8 +33,8 @@ const RUN: usize = 64;
 /// Share of its limit from which on a last channel makes the colour neutral, at most: less where channels clip far
 /// apart, for which there is more room then.
 const NEARLY: f32 = 0.8;
-/// Share of the clipping level at which a fully clipped pixel that demosaicing has tinted begins to be made neutral.
-const TINTED: f32 = 0.9;
+/// Shares of its limit between which a last channel ends: what is rebuilt from it becomes neutral before (`neutralise`).
+const ENDED: (f32, f32) = (0.96, 1.0);
 /// Weight of samples that are not trusted, beside 1, where none is trusted entirely.
 const GUESS: f32 = 0.02;
 /// What two channels say about the strength of a colour counts from about the square root of this on.
@@ -103,7 +103,7 @@ fn rebuild_pixels(mosaic: &mut Mosaic<f32>, begin: (isize, isize), rebuild: &Reb
     }
 }
 
-/// Light that no sample which matters is below: a channel that is not clipped matters beside one that is.
+/// Light that no sample which is changed is below.
 fn lowest(rebuild: &Rebuild, ends: &[f32]) -> f32 {
     let limits = if ends.is_empty() { &rebuild.limits[..] } else { ends };
     TRUSTED * limits.iter().fold(f32::MAX, |a, &b| a.min(b))
@@ -129,20 +129,20 @@ fn rebuild_mosaic(
     let plane = |x: usize, y: usize| cfa.at(x, y).plane().unwrap_or(1);
     // Places and values of what was rebuilt: nothing is to be estimated from estimates.
     let mut changed: Vec<(usize, f32)> = Vec::new();
-    for y in (BORDER..height - BORDER).filter(|y| bright[y - BORDER..=y + BORDER].contains(&true)) {
+    for y in (BORDER..height - BORDER).filter(|y| bright[*y]) {
         let planes: Vec<usize> = (0..cfa.width()).map(|x| plane(x, y)).collect();
         for first in (BORDER..width - BORDER).step_by(RUN) {
             let run = first..(first + RUN).min(width - BORDER);
-            // Beside a clipped sample others may have to become neutral.
-            let near =
-                |v: usize| &mosaic.samples[v * width + run.start - BORDER..v * width + run.end + BORDER];
-            if !(y - BORDER..=y + BORDER).any(|v| bright[v] && reaches(near(v), lowest)) {
+            if !reaches(&mosaic.samples[y * width + run.start..y * width + run.end], lowest) {
                 continue;
             }
             for x in run {
                 let place = x % cfa.width();
                 let (own, centre) = (planes[place], y * width + x);
                 let v = mosaic.samples[centre];
+                if v < lowest {
+                    continue;
+                }
                 let around = &surroundings[y % cfa.height() * cfa.width() + place];
                 let (mut sums, mut weights, mut limits) = ([0f32; 3], [0f32; 3], rebuild.limits);
                 for &(c, offset) in around {
@@ -161,7 +161,7 @@ fn rebuild_mosaic(
                 if let Some(&end) = ends.get(centre) {
                     limits[own] = end;
                 }
-                if (0..3).any(|c| around[c] >= TRUSTED * limits[c]) {
+                if v >= TRUSTED * limits[own] {
                     let colour = rebuild.colours.at(begin.0 + x as isize, begin.1 + y as isize);
                     changed.push((centre, v.max(rebuilt(around, limits, colour)[own])));
                 }
@@ -212,7 +212,8 @@ pub(crate) fn reaches(samples: &[f32], level: f32) -> bool {
     found
 }
 
-/// What a colour may be whose channels end at these limits. `colour` is that of the picture around, its mean 1.
+/// What a colour may be whose channels end at these limits. `colour` is that of the picture around, its mean 1. Channels
+/// that are not clipped stay as they are; where all are, the result is neutral.
 pub(crate) fn rebuilt(seen: [f32; 3], limits: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
     let shares: [f32; 3] = from_fn(|c| seen[c].max(0.0) / limits[c]);
     let trust = shares.map(|share| 1.0 - smooth(share, TRUSTED, CLIPPED));
@@ -230,10 +231,19 @@ pub(crate) fn rebuilt(seen: [f32; 3], limits: [f32; 3], colour: [f32; 3]) -> [f3
     let light = light / weights;
     let estimates: [f32; 3] =
         from_fn(|c| seen[c] + (1.0 - trust[c]) * (colour[c] * light - seen[c]).max(0.0));
-    let neutral = neutrality(shares, ends);
     // The brightest channel is the best guess of how bright the surface is at least.
     let white = most(estimates);
-    estimates.map(|v| v + (white - v) * neutral)
+    let neutral = smooth(least(shares), ENDED.0, ENDED.1);
+    from_fn(|c| estimates[c] + (white - estimates[c]) * neutral * (1.0 - trust[c]))
+}
+
+/// Between a value and white: half by their difference, half by that of their inverses. By the first alone dark channels of
+/// a strong colour rise too early, by the second too late.
+#[inline(always)]
+fn towards(v: f32, white: f32, share: f32) -> f32 {
+    let even = v + (white - v) * share;
+    let inverse = (1.0 - share) / v.max(f32::MIN_POSITIVE) + share / white.max(f32::MIN_POSITIVE);
+    if share > 0.0 { 0.5 * (even + 1.0 / inverse) } else { v }
 }
 
 /// A colour (mean 1) between grey and `colour`, as strong as the trusted ones among the channels say.
@@ -251,13 +261,14 @@ fn as_strong_as(seen: [f32; 3], trust: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
     colour.map(|v| (1.0 + (v - 1.0) * strength).max(0.05))
 }
 
-/// How neutral to make a colour whose channels have these shares of their limits: 0 as long as none is clipped, 1 when all
-/// are. In between there is as much room as between the first and the last channel's clipping.
-fn neutrality(shares: [f32; 3], ends: [f32; 3]) -> f32 {
-    let apart = least(ends) / most(ends);
-    let begin = apart.clamp(0.05, NEARLY);
-    let t = ((least(shares) - begin) / (CLIPPED - begin)).clamp(0.0, 1.0);
-    t * t * t * (4.0 - 3.0 * t) * smooth(most(shares), TRUSTED, CLIPPED)
+/// How neutral to make a colour whose channels, rebuilt, have these shares of their limits: 0 as long as none is clipped, 1
+/// when all are. In between there is as much room as between the first and the last channel's clipping.
+#[inline(always)]
+fn neutrality(shares: [f32; 3]) -> f32 {
+    let (least, most) = (least(shares), most(shares));
+    let begin = (least / most.max(TRUSTED)).clamp(0.05, NEARLY);
+    let t = ((least - begin) / (CLIPPED - begin)).clamp(0.0, 1.0);
+    t * t * (2.0 - t) * smooth(most, TRUSTED, CLIPPED)
 }
 
 /// 0 up to one value, 1 from another one on, smooth between them.
@@ -267,32 +278,41 @@ fn smooth(v: f32, from: f32, to: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+#[inline(always)]
 fn most(v: [f32; 3]) -> f32 {
     v[0].max(v[1]).max(v[2])
 }
 
+#[inline(always)]
 fn least(v: [f32; 3]) -> f32 {
     v[0].min(v[1]).min(v[2])
 }
 
-/// Makes neutral what is clipped in every channel and was tinted by demosaicing, where limits are the same everywhere.
+/// Makes a rebuilt picture neutral where its last channel goes towards its limit. Corrections that make limits differ from
+/// place to place leave nothing to compare with here.
 pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
     let Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) = treatment else { return };
     let [r, g, b] = picture.planes_mut();
     let scale = limits.map(|l| 1.0 / l);
-    vectorised(
-        #[inline(always)]
-        || {
-            for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                let share = (*r * scale[0]).min(*g * scale[1]).min(*b * scale[2]);
-                let weight = smooth(share, TINTED, CLIPPED);
-                let white = r.max(*g).max(*b);
-                *r += (white - *r) * weight;
-                *g += (white - *g) * weight;
-                *b += (white - *b) * weight;
-            }
-        },
-    );
+    for ((r, g), b) in r.chunks_mut(RUN).zip(g.chunks_mut(RUN)).zip(b.chunks_mut(RUN)) {
+        let is_bright = |plane: &[f32], c: usize| reaches(plane, TRUSTED * limits[c]);
+        if !is_bright(r, 0) && !is_bright(g, 1) && !is_bright(b, 2) {
+            continue;
+        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
+                    let weight = neutrality([*r * scale[0], *g * scale[1], *b * scale[2]]);
+                    // The brightest channel is the best guess of how bright the surface is at least.
+                    let white = r.max(*g).max(*b);
+                    *r = towards(*r, white, weight);
+                    *g = towards(*g, white, weight);
+                    *b = towards(*b, white, weight);
+                }
+            },
+        );
+    }
 }
 
 #[cfg(test)]

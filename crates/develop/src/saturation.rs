@@ -44,6 +44,8 @@ const ABOVE: u64 = 8;
 const QUIET: f32 = 0.4;
 /// Without windows that show noise: a heap that is clipped has less than this standard deviation.
 const NARROW: f32 = 0.0012;
+/// Bins below a heap in which light that runs into it shows.
+const BELOW: usize = 100;
 /// Heaps of three channels that lie so near each other are the end of one converter.
 const ALIKE: f32 = 0.008;
 
@@ -119,12 +121,14 @@ struct Heap {
     middle: f32,
     /// Standard deviation.
     spread: f32,
+    /// Whether there is light of every brightness below it, as where light runs into an end.
+    is_run_into: bool,
 }
 
 impl Heap {
     /// Whether it has less noise than photons, whose variance is that of the square roots of light, would make.
     fn is_quiet(self, photons: Option<f32>) -> bool {
-        photons.map_or(self.spread < NARROW, |variance| {
+        photons.map_or(self.spread < NARROW && self.is_run_into, |variance| {
             let of_roots = self.spread / (2.0 * self.middle.sqrt());
             of_roots * of_roots < QUIET * variance
         })
@@ -158,8 +162,10 @@ fn heap(bins: &[u64; BINS]) -> Option<Heap> {
         })
         .map_or(found, |(i, _)| i)
     };
-    let spread = light(rank(0.841)) - light(rank(0.159));
-    Some(Heap { level: light(first), middle: light(found) + 0.5 * BIN, spread: 0.5 * spread.max(0.5 * BIN) })
+    let spread = 0.5 * (light(rank(0.841)) - light(rank(0.159))).max(0.5 * BIN);
+    let below = found.saturating_sub(BELOW)..found - HEAP;
+    let is_run_into = 2 * bins[below.clone()].iter().filter(|&&n| n > 0).count() > below.len();
+    Some(Heap { level: light(first), middle: light(found) + 0.5 * BIN, spread, is_run_into })
 }
 
 #[cfg(test)]
