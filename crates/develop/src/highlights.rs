@@ -33,6 +33,14 @@ const RUN: usize = 64;
 /// Share of its limit from which on a last channel makes the colour neutral, at most: less where channels clip far
 /// apart, for which there is more room then.
 const NEARLY: f32 = 0.8;
+/// Difference of two channels beyond what a clipped one allows that excludes a colour.
+const EXCLUDED: f32 = 0.2;
+/// How much stronger a colour may be than that of the picture around.
+const STRONGEST: f32 = 2.0;
+/// How much of the light counts that only a clipped channel tells of: the colour around may be that of something else.
+const TOLD: f32 = 0.7;
+/// How much more light clipped channels may tell of than the trusted ones do.
+const BEYOND: f32 = 3.0;
 /// Shares of its limit between which a last channel ends: what is rebuilt from it becomes neutral before (`neutralise`).
 const ENDED: (f32, f32) = (0.96, 1.0);
 /// Weight of samples that are not trusted, beside 1, where none is trusted entirely.
@@ -229,6 +237,9 @@ pub(crate) fn rebuilt(seen: [f32; 3], limits: [f32; 3], colour: [f32; 3]) -> [f3
         weights += weight * colour[c];
     }
     let light = light / weights;
+    // Clipped channels are at least as bright as they seem, and the others with them.
+    let more = (0..3).map(|c| (1.0 - trust[c]) * (seen[c] / colour[c] - light).max(0.0));
+    let light = light + (TOLD * more.fold(0.0, f32::max)).min(BEYOND * light);
     let estimates: [f32; 3] =
         from_fn(|c| seen[c] + (1.0 - trust[c]) * (colour[c] * light - seen[c]).max(0.0));
     // The brightest channel is the best guess of how bright the surface is at least.
@@ -246,18 +257,21 @@ fn towards(v: f32, white: f32, share: f32) -> f32 {
     if share > 0.0 { 0.5 * (even + 1.0 / inverse) } else { v }
 }
 
-/// A colour (mean 1) between grey and `colour`, as strong as the trusted ones among the channels say.
+/// A colour (mean 1) of the hue of `colour`, as strong as the channels say: two trusted ones by their difference, one beside
+/// a clipped one by what it excludes.
 fn as_strong_as(seen: [f32; 3], trust: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
     let (mut found, mut expected) = (FAINT, FAINT);
-    for (k, l) in [(0, 1), (1, 2), (2, 0)] {
+    for (k, l) in [(0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)] {
         let sum = (seen[k] + seen[l]).max(f32::MIN_POSITIVE);
         let difference = (seen[k] - seen[l]) / sum;
         let of_colour = (seen[l] * (colour[k] - 1.0) - seen[k] * (colour[l] - 1.0)) / sum;
-        let weight = trust[k] * trust[l] * of_colour;
+        // A clipped `l` is at least as bright as it seems.
+        let excluded = smooth(of_colour - difference, 0.0, EXCLUDED) * (1.0 - trust[l]);
+        let weight = trust[k] * (0.5 * trust[l] + excluded) * of_colour;
         found += weight * difference;
         expected += weight * of_colour;
     }
-    let strength = (found / expected).clamp(0.0, 1.0);
+    let strength = (found / expected).clamp(0.0, STRONGEST);
     colour.map(|v| (1.0 + (v - 1.0) * strength).max(0.05))
 }
 
