@@ -1,6 +1,6 @@
 //! Colour science without pictures.
 //!
-//! Tristimulus values, CIELAB, CIELUV, white points, spectra measured or standard, the standard observer,
+//! Tristimulus values, CIELAB, CIELUV, Oklab, white points, spectra measured or standard, the standard observer,
 //! correlated colour temperature, chromatic adaptation, colour differences, RGB spaces and their transfer curves.
 //! Everything is `f64`, pure and free of state.
 //!
@@ -14,6 +14,9 @@ pub use xyz::{Lab, Xy, Xyz};
 
 pub mod luv;
 pub use luv::{Luv, UvPrime};
+
+pub mod oklab;
+pub use oklab::Oklab;
 
 pub mod white;
 

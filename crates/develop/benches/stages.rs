@@ -5,12 +5,13 @@
 #![allow(missing_docs, clippy::expect_used)] // Criterion's macros document nothing; a bench may stop.
 
 use std::hint::black_box;
+use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use darkroot_colour::{RgbSpace, TransferCurve};
 use darkroot_develop::demosaic::Method;
 use darkroot_develop::gamut::Primaries;
-use darkroot_develop::highlights::Treatment;
+use darkroot_develop::highlights::{Rebuild, Treatment};
 use darkroot_develop::level::Levels;
 use darkroot_develop::tone::Curve;
 use darkroot_develop::transfer::Encoder;
@@ -50,12 +51,13 @@ fn stages(c: &mut Criterion) {
             }
         });
     });
-    let treatment = Treatment::Rebuild { limits: [0.62, 0.6, 0.61], offsets: [0.0; 3] };
+    let limits = [0.62, 0.6, 0.61];
+    let treatment = Treatment::Rebuild(Rebuild { limits, colours: Arc::default(), uneven: false });
     group.bench_function("highlights", |b| {
         b.iter_batched(
             || mosaic("RGGB"),
             |mut m| {
-                highlights::treat(&mut m, &treatment);
+                highlights::treat(&mut m, (0, 0), &treatment, &[]);
                 m
             },
             BatchSize::LargeInput,

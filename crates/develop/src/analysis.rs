@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use darkroot_photo::{Capture, Counts};
 
 use crate::auto_white::Seen;
+use crate::clipped_colours::ClippedColours;
 use crate::denoise::{self, Asked, Denoiser, Measured, NoiseModel};
 use crate::light::LinearLight;
 use crate::mend::Mends;
@@ -25,6 +26,8 @@ pub struct Analysis {
     mends: OnceLock<Arc<Mends>>,
     denoiser: Mutex<Option<Arc<Denoiser>>>,
     colours: OnceLock<Option<Seen>>,
+    /// For the multipliers that were asked for last: a person who drags another setting keeps them.
+    clipped: Mutex<Option<([f32; 3], Arc<ClippedColours>)>>,
 }
 
 impl Analysis {
@@ -40,6 +43,7 @@ impl Analysis {
             mends: OnceLock::new(),
             denoiser: Mutex::new(None),
             colours: OnceLock::new(),
+            clipped: Mutex::new(None),
         }
     }
 
@@ -67,7 +71,7 @@ impl Analysis {
 
     /// Light of small blocks, and where channels clip.
     pub fn survey(&self) -> &Survey {
-        self.survey.get_or_init(|| survey::survey(&self.capture, &self.light))
+        self.survey.get_or_init(|| survey::survey(&self.capture, &self.light, || self.noise()))
     }
 
     /// Colours that tell of the light; `None` where too little of the picture is usable.
@@ -116,6 +120,23 @@ impl Analysis {
         let filter = Arc::new(Denoiser::of(&self.capture, asked)?);
         *last = Some(Arc::clone(&filter));
         Some(filter)
+    }
+
+    /// Colours where the frame is not clipped, balanced, continued into where it is.
+    pub(crate) fn clipped_colours(&self, multipliers: [f32; 3]) -> Arc<ClippedColours> {
+        let mut last = self.clipped.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*last {
+            Some((of, colours)) if of.map(f32::to_bits) == multipliers.map(f32::to_bits) => {
+                Arc::clone(colours)
+            }
+            _ => {
+                let area = self.capture.active_area;
+                let colours = ClippedColours::of(self.survey(), (area.x, area.y), multipliers);
+                let colours = Arc::new(colours);
+                *last = Some((multipliers, Arc::clone(&colours)));
+                colours
+            }
+        }
     }
 
     /// Windows in which noise shows; none for other sensors than Bayer.

@@ -41,8 +41,9 @@ impl Analysis {
             })
             .collect();
         let bright = bright.iter().fold(BrightSamples::none(), BrightSamples::and);
+        let saturation = bright.saturation(layout, || self.noise());
         let layout = layout_from(layout, area.x as isize, area.y as isize);
         let light = Mosaic { size: area.size(), layout, samples };
-        Frame { light, saturation: bright.saturation() }
+        Frame { light, saturation }
     }
 }

@@ -37,8 +37,8 @@ const FEW: f32 = 0.05;
 /// Cuts the colours of a picture that was demosaiced from this mosaic, which has `border` more pixels, at least
 /// [`BORDER`], on each side.
 pub fn cut(mosaic: &Mosaic<f32>, border: usize, treatment: &Treatment, picture: &mut Rgb<CameraSpace>) {
-    let (Treatment::Rebuild { limits, .. }, Layout::Cfa(cfa)) = (treatment, &mosaic.layout) else { return };
-    let bright = limits.iter().fold(f32::MAX, |a, &b| a.min(b)) * CLIPPED;
+    let (Treatment::Rebuild(rebuild), Layout::Cfa(cfa)) = (treatment, &mosaic.layout) else { return };
+    let bright = rebuild.limits.iter().fold(f32::MAX, |a, &b| a.min(b)) * CLIPPED;
     if !reaches(&mosaic.samples, bright) {
         return;
     }
@@ -175,11 +175,16 @@ fn around(mosaic: &Mosaic<f32>, kinds: &[u8], centre: usize) -> Option<([f32; 3]
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::highlights::Rebuild;
     use darkroot_photo::Size;
 
     const SIZE: Size = Size { width: 30, height: 30 };
-    const TREATMENT: Treatment = Treatment::Rebuild { limits: [2.0, 1.0, 1.5], offsets: [0.0; 3] };
+    fn treatment() -> Treatment {
+        Treatment::Rebuild(Rebuild { limits: [2.0, 1.0, 1.5], colours: Arc::default(), uneven: false })
+    }
 
     /// A surface of one colour under an RGGB array, with a bright spot of 3 x 3 pixels in the middle.
     fn spot(surface: [f32; 3]) -> Mosaic<f32> {
@@ -194,7 +199,7 @@ mod tests {
     fn cut_at(mosaic: &Mosaic<f32>, (x, y): (usize, usize), pixel: [f32; 3]) -> [f32; 3] {
         let inner = Size { width: 20, height: 20 };
         let mut picture = Rgb::from_planes(inner, pixel.map(|v| vec![v; inner.area()])).unwrap();
-        cut(mosaic, BORDER, &TREATMENT, &mut picture);
+        cut(mosaic, BORDER, &treatment(), &mut picture);
         picture.at(x - BORDER, y - BORDER)
     }
 

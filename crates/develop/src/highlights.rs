@@ -1,17 +1,21 @@
 //! Clipped highlights: samples at the sensor's limit say only "at least this much".
 //!
 //! After balancing, the channels clip at different values (their multipliers), so that a white surface that is
-//! too bright turns pink or green. Rebuilding estimates a clipped sample from the other two channels around it:
-//! their mean, plus the typical difference between this channel and that mean where the picture begins to clip
-//! (measured once over the frame). Clipped samples lie on the bright side of an edge, so bright samples around
-//! them tell more than dark ones. Where every channel is clipped there is nothing left to estimate from, and the
-//! result is made neutral.
+//! too bright turns pink or green. Rebuilding estimates a clipped sample from the channels around it that are not
+//! clipped, and from the colour that the picture has where it is not (`clipped_colours.rs`): as strong as those channels
+//! say where two of them are left, and with their light where one is. Clipped samples lie on the bright side of an edge,
+//! so bright samples around them tell more than dark ones. While the last channel goes towards its limit, the result
+//! becomes neutral; where every channel is clipped there is nothing left to estimate from.
+//!
+//! Nothing switches: how far a sample is trusted, and how neutral the result is, are smooth functions of the light.
 
 use std::array::from_fn;
+use std::sync::Arc;
 
 use darkroot_colour::simd::vectorised;
 use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
 
+use crate::clipped_colours::ClippedColours;
 use crate::stage::{Stage, WhenSmaller};
 
 /// Pixels around a sample that rebuilding looks at.
@@ -22,21 +26,33 @@ pub const STAGE: Stage = Stage { name: "highlights", border: BORDER, when_smalle
 
 /// Share of the clipping level at which a sample counts as clipped: noise makes saturated samples scatter.
 pub const CLIPPED: f32 = 0.985;
+/// Share of the clipping level up to which a sample is trusted entirely.
+const TRUSTED: f32 = 0.93;
 /// Samples that are looked at together, as most of them are not clipped.
 const RUN: usize = 64;
-/// Share of the clipping level at which a fully clipped colour begins to be made neutral.
-const NEARLY: f32 = 0.9;
+/// Share of its limit from which on a last channel makes the colour neutral, at most: less where channels clip far
+/// apart, for which there is more room then.
+const NEARLY: f32 = 0.8;
+/// Difference of two channels beyond what a clipped one allows that excludes a colour.
+const EXCLUDED: f32 = 0.2;
+/// How much stronger a colour may be than that of the picture around.
+const STRONGEST: f32 = 2.0;
+/// How much of the light counts that only a clipped channel tells of: the colour around may be that of something else.
+const TOLD: f32 = 0.7;
+/// How much more light clipped channels may tell of than the trusted ones do.
+const BEYOND: f32 = 3.0;
+/// Shares of its limit between which a last channel ends: what is rebuilt from it becomes neutral before (`neutralise`).
+const ENDED: (f32, f32) = (0.96, 1.0);
+/// Weight of samples that are not trusted, beside 1, where none is trusted entirely.
+const GUESS: f32 = 0.02;
+/// What two channels say about the strength of a colour counts from about the square root of this on.
+const FAINT: f32 = 0.003;
 
 /// How to treat clipped samples, prepared for one capture.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Treatment {
     /// Estimate from the other channels.
-    Rebuild {
-        /// Balanced value at which each channel clips (its multiplier).
-        limits: [f32; 3],
-        /// Typical difference between a channel and the mean of the two others near clipped areas.
-        offsets: [f32; 3],
-    },
+    Rebuild(Rebuild),
     /// Cut every channel where the first one clips.
     Clip {
         /// Balanced value at which the first channel clips.
@@ -46,8 +62,21 @@ pub enum Treatment {
     Keep,
 }
 
-/// Treats the samples of a balanced mosaic. The outermost [`BORDER`] pixels are left as they are.
-pub fn treat(mosaic: &mut Mosaic<f32>, treatment: &Treatment) {
+/// What rebuilding knows of a capture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rebuild {
+    /// Balanced value at which each channel clips (its multiplier), before the file's corrections.
+    pub limits: [f32; 3],
+    /// Colours where the picture is not clipped.
+    pub colours: Arc<ClippedColours>,
+    /// Whether corrections of the file make the limits differ from place to place.
+    pub uneven: bool,
+}
+
+/// Treats the samples of a balanced mosaic, whose first one lies in column and row `begin` of the frame. The outermost
+/// [`BORDER`] pixels are left as they are. `ends` has the value at which each sample clips where the file's corrections
+/// make that differ from place to place; else it is empty.
+pub fn treat(mosaic: &mut Mosaic<f32>, begin: (isize, isize), treatment: &Treatment, ends: &[f32]) {
     match (treatment, &mosaic.layout) {
         (Treatment::Keep, _) | (_, Layout::Monochrome) => {}
         (Treatment::Clip { limit }, _) => {
@@ -55,37 +84,60 @@ pub fn treat(mosaic: &mut Mosaic<f32>, treatment: &Treatment) {
                 *v = v.min(*limit);
             }
         }
-        (Treatment::Rebuild { limits, offsets }, Layout::Cfa(cfa)) => {
+        (Treatment::Rebuild(rebuild), Layout::Cfa(cfa)) => {
             let cfa = cfa.clone();
-            rebuild_mosaic(mosaic, &cfa, *limits, *offsets);
+            rebuild_mosaic(mosaic, begin, &cfa, rebuild, ends);
         }
-        (Treatment::Rebuild { limits, offsets }, Layout::Rgb) => {
-            for pixel in mosaic.samples.chunks_exact_mut(3) {
-                let seen = [pixel[0], pixel[1], pixel[2]];
-                for c in 0..3 {
-                    if seen[c] >= CLIPPED * limits[c] {
-                        let others = (seen[(c + 1) % 3] + seen[(c + 2) % 3]) / 2.0;
-                        pixel[c] = seen[c].max(others + offsets[c]);
-                    }
-                }
+        (Treatment::Rebuild(rebuild), Layout::Rgb) => rebuild_pixels(mosaic, begin, rebuild, ends),
+    }
+}
+
+fn rebuild_pixels(mosaic: &mut Mosaic<f32>, begin: (isize, isize), rebuild: &Rebuild, ends: &[f32]) {
+    let lowest = lowest(rebuild, ends);
+    let width = mosaic.size.width;
+    for (y, row) in mosaic.samples.chunks_exact_mut(3 * width).enumerate() {
+        if !reaches(row, lowest) {
+            continue;
+        }
+        for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
+            let at = 3 * (y * width + x);
+            let limits = from_fn(|c| ends.get(at + c).copied().unwrap_or(rebuild.limits[c]));
+            let seen = [pixel[0], pixel[1], pixel[2]];
+            if (0..3).any(|c| seen[c] >= TRUSTED * limits[c]) {
+                let colour = rebuild.colours.at(begin.0 + x as isize, begin.1 + y as isize);
+                pixel.copy_from_slice(&rebuilt(seen, limits, colour));
             }
         }
     }
 }
 
-fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets: [f32; 3]) {
+/// Light that no sample which is changed is below.
+fn lowest(rebuild: &Rebuild, ends: &[f32]) -> f32 {
+    let limits = if ends.is_empty() { &rebuild.limits[..] } else { ends };
+    TRUSTED * limits.iter().fold(f32::MAX, |a, &b| a.min(b))
+}
+
+fn rebuild_mosaic(
+    mosaic: &mut Mosaic<f32>,
+    begin: (isize, isize),
+    cfa: &Cfa,
+    rebuild: &Rebuild,
+    ends: &[f32],
+) {
     let (width, height) = (mosaic.size.width, mosaic.size.height);
-    let clipped = limits.map(|l| l * CLIPPED);
-    let lowest = clipped.iter().fold(f32::MAX, |a, &b| a.min(b));
-    if width <= 2 * BORDER || height <= 2 * BORDER || !reaches(&mosaic.samples, lowest) {
+    if width <= 2 * BORDER || height <= 2 * BORDER {
+        return;
+    }
+    let lowest = lowest(rebuild, ends);
+    let bright: Vec<bool> = mosaic.samples.chunks_exact(width).map(|row| reaches(row, lowest)).collect();
+    if !bright.contains(&true) {
         return;
     }
     let surroundings = surroundings(cfa, width);
     let plane = |x: usize, y: usize| cfa.at(x, y).plane().unwrap_or(1);
-    let scale = limits.map(|l| 1.0 / l);
     // Places and values of what was rebuilt: nothing is to be estimated from estimates.
-    let mut rebuilt: Vec<(usize, f32)> = Vec::new();
-    for y in BORDER..height - BORDER {
+    let mut changed: Vec<(usize, f32)> = Vec::new();
+    for y in (BORDER..height - BORDER).filter(|y| bright[*y]) {
         let planes: Vec<usize> = (0..cfa.width()).map(|x| plane(x, y)).collect();
         for first in (BORDER..width - BORDER).step_by(RUN) {
             let run = first..(first + RUN).min(width - BORDER);
@@ -96,29 +148,35 @@ fn rebuild_mosaic(mosaic: &mut Mosaic<f32>, cfa: &Cfa, limits: [f32; 3], offsets
                 let place = x % cfa.width();
                 let (own, centre) = (planes[place], y * width + x);
                 let v = mosaic.samples[centre];
-                if v < clipped[own] {
+                if v < lowest {
                     continue;
                 }
                 let around = &surroundings[y % cfa.height() * cfa.width() + place];
-                let (mut sums, mut weights) = ([0f32; 3], [0f32; 3]);
+                let (mut sums, mut weights, mut limits) = ([0f32; 3], [0f32; 3], rebuild.limits);
                 for &(c, offset) in around {
-                    let light = mosaic.samples[centre.wrapping_add_signed(offset)].max(0.0);
+                    let at = centre.wrapping_add_signed(offset);
+                    let light = mosaic.samples[at].max(0.0);
                     // Fourth power (a Lehmer mean): of a reflex and its dark surroundings only the reflex counts.
                     let weight = light * light * light * light;
                     sums[c] += weight * light;
                     weights[c] += weight;
+                    if let Some(&end) = ends.get(at) {
+                        limits[c] = end;
+                    }
                 }
                 let mut around: [f32; 3] = from_fn(|c| sums[c] / weights[c].max(f32::MIN_POSITIVE));
                 around[own] = v;
-                let others = (around[(own + 1) % 3] + around[(own + 2) % 3]) / 2.0;
-                let white = around.iter().fold(v, |a, &b| a.max(b));
-                let neutral = neutrality(around, scale);
-                let estimate = others + offsets[own];
-                rebuilt.push((centre, v.max(estimate + (white - estimate) * neutral)));
+                if let Some(&end) = ends.get(centre) {
+                    limits[own] = end;
+                }
+                if v >= TRUSTED * limits[own] {
+                    let colour = rebuild.colours.at(begin.0 + x as isize, begin.1 + y as isize);
+                    changed.push((centre, v.max(rebuilt(around, limits, colour)[own])));
+                }
             }
         }
     }
-    for (place, v) in rebuilt {
+    for (place, v) in changed {
         mosaic.samples[place] = v;
     }
 }
@@ -162,82 +220,114 @@ pub(crate) fn reaches(samples: &[f32], level: f32) -> bool {
     found
 }
 
-/// How neutral to make a colour: 0 when some channel is far from its limit, 1 when all are clipped.
+/// What a colour may be whose channels end at these limits. `colour` is that of the picture around, its mean 1. Channels
+/// that are not clipped stay as they are; where all are, the result is neutral.
+pub(crate) fn rebuilt(seen: [f32; 3], limits: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
+    let shares: [f32; 3] = from_fn(|c| seen[c].max(0.0) / limits[c]);
+    let trust = shares.map(|share| 1.0 - smooth(share, TRUSTED, CLIPPED));
+    let colour = as_strong_as(seen, trust, colour);
+    // Where no channel is trusted, the one that clips last tells most.
+    let ends: [f32; 3] = from_fn(|c| limits[c] / colour[c]);
+    let last = ends.map(|end| end * end * end * end);
+    let guess = GUESS * (1.0 - most(trust)) / (last[0] + last[1] + last[2]);
+    let (mut light, mut weights) = (0.0, 0.0);
+    for c in 0..3 {
+        let weight = (trust[c] + guess * last[c]) * colour[c];
+        light += weight * seen[c];
+        weights += weight * colour[c];
+    }
+    let light = light / weights;
+    // Clipped channels are at least as bright as they seem, and the others with them.
+    let more = (0..3).map(|c| (1.0 - trust[c]) * (seen[c] / colour[c] - light).max(0.0));
+    let light = light + (TOLD * more.fold(0.0, f32::max)).min(BEYOND * light);
+    let estimates: [f32; 3] =
+        from_fn(|c| seen[c] + (1.0 - trust[c]) * (colour[c] * light - seen[c]).max(0.0));
+    // The brightest channel is the best guess of how bright the surface is at least.
+    let white = most(estimates);
+    let neutral = smooth(least(shares), ENDED.0, ENDED.1);
+    from_fn(|c| estimates[c] + (white - estimates[c]) * neutral * (1.0 - trust[c]))
+}
+
+/// Between a value and white: half by their difference, half by that of their inverses. By the first alone dark channels of
+/// a strong colour rise too early, by the second too late.
 #[inline(always)]
-fn neutrality(rgb: [f32; 3], scale: [f32; 3]) -> f32 {
-    let share = (rgb[0] * scale[0]).min(rgb[1] * scale[1]).min(rgb[2] * scale[2]);
-    let t = ((share - NEARLY) * (1.0 / (CLIPPED - NEARLY))).clamp(0.0, 1.0);
+fn towards(v: f32, white: f32, share: f32) -> f32 {
+    let even = v + (white - v) * share;
+    let inverse = (1.0 - share) / v.max(f32::MIN_POSITIVE) + share / white.max(f32::MIN_POSITIVE);
+    if share > 0.0 { 0.5 * (even + 1.0 / inverse) } else { v }
+}
+
+/// A colour (mean 1) of the hue of `colour`, as strong as the channels say: two trusted ones by their difference, one beside
+/// a clipped one by what it excludes.
+fn as_strong_as(seen: [f32; 3], trust: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
+    let (mut found, mut expected) = (FAINT, FAINT);
+    for (k, l) in [(0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)] {
+        let sum = (seen[k] + seen[l]).max(f32::MIN_POSITIVE);
+        let difference = (seen[k] - seen[l]) / sum;
+        let of_colour = (seen[l] * (colour[k] - 1.0) - seen[k] * (colour[l] - 1.0)) / sum;
+        // A clipped `l` is at least as bright as it seems.
+        let excluded = smooth(of_colour - difference, 0.0, EXCLUDED) * (1.0 - trust[l]);
+        let weight = trust[k] * (0.5 * trust[l] + excluded) * of_colour;
+        found += weight * difference;
+        expected += weight * of_colour;
+    }
+    let strength = (found / expected).clamp(0.0, STRONGEST);
+    colour.map(|v| (1.0 + (v - 1.0) * strength).max(0.05))
+}
+
+/// How neutral to make a colour whose channels, rebuilt, have these shares of their limits: 0 as long as none is clipped, 1
+/// when all are. In between there is as much room as between the first and the last channel's clipping.
+#[inline(always)]
+fn neutrality(shares: [f32; 3]) -> f32 {
+    let (least, most) = (least(shares), most(shares));
+    let begin = (least / most.max(TRUSTED)).clamp(0.05, NEARLY);
+    let t = ((least - begin) / (CLIPPED - begin)).clamp(0.0, 1.0);
+    t * t * (2.0 - t) * smooth(most, TRUSTED, CLIPPED)
+}
+
+/// 0 up to one value, 1 from another one on, smooth between them.
+#[inline(always)]
+fn smooth(v: f32, from: f32, to: f32) -> f32 {
+    let t = ((v - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Makes neutral what is clipped in every channel.
+#[inline(always)]
+fn most(v: [f32; 3]) -> f32 {
+    v[0].max(v[1]).max(v[2])
+}
+
+#[inline(always)]
+fn least(v: [f32; 3]) -> f32 {
+    v[0].min(v[1]).min(v[2])
+}
+
+/// Makes a rebuilt picture neutral where its last channel goes towards its limit. Corrections that make limits differ from
+/// place to place leave nothing to compare with here.
 pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
-    let Treatment::Rebuild { limits, .. } = treatment else { return };
+    let Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) = treatment else { return };
     let [r, g, b] = picture.planes_mut();
     let scale = limits.map(|l| 1.0 / l);
-    vectorised(
-        #[inline(always)]
-        || {
-            for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                let weight = neutrality([*r, *g, *b], scale);
-                // The brightest channel is the best guess of how bright the surface is at least.
-                let white = r.max(*g).max(*b);
-                *r += (white - *r) * weight;
-                *g += (white - *g) * weight;
-                *b += (white - *b) * weight;
-            }
-        },
-    );
+    for ((r, g), b) in r.chunks_mut(RUN).zip(g.chunks_mut(RUN)).zip(b.chunks_mut(RUN)) {
+        let is_bright = |plane: &[f32], c: usize| reaches(plane, TRUSTED * limits[c]);
+        if !is_bright(r, 0) && !is_bright(g, 1) && !is_bright(b, 2) {
+            continue;
+        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
+                    let weight = neutrality([*r * scale[0], *g * scale[1], *b * scale[2]]);
+                    // The brightest channel is the best guess of how bright the surface is at least.
+                    let white = r.max(*g).max(*b);
+                    *r = towards(*r, white, weight);
+                    *g = towards(*g, white, weight);
+                    *b = towards(*b, white, weight);
+                }
+            },
+        );
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use darkroot_photo::Size;
-
-    const LIMITS: [f32; 3] = [2.0, 1.0, 1.5];
-    const TREATMENT: Treatment = Treatment::Rebuild { limits: LIMITS, offsets: [0.0; 3] };
-
-    /// A grey surface of the given light under an RGGB array, clipped by the sensor.
-    fn grey(light: f32) -> Mosaic<f32> {
-        let cfa = Cfa::parse("RGGB").unwrap();
-        let size = Size { width: 10, height: 10 };
-        let sample = |i: usize| light.min(LIMITS[cfa.at(i % 10, i / 10).plane().unwrap()]);
-        Mosaic { size, samples: (0..100).map(sample).collect(), layout: Layout::Cfa(cfa) }
-    }
-
-    #[test]
-    fn a_grey_that_clips_in_green_only_is_grey_again() {
-        let mut mosaic = grey(1.3);
-        treat(&mut mosaic, &TREATMENT);
-        for y in 2..8 {
-            for x in 2..8 {
-                assert!((mosaic.samples[y * 10 + x] - 1.3).abs() < 1e-5);
-            }
-        }
-    }
-
-    #[test]
-    fn what_is_not_clipped_is_not_touched() {
-        let (before, mut after) = (grey(0.9), grey(0.9));
-        treat(&mut after, &TREATMENT);
-        assert_eq!(before, after);
-    }
-
-    #[test]
-    fn a_surface_that_clips_in_every_channel_is_neutral() {
-        let planes = LIMITS.map(|l| vec![l]);
-        let mut picture = Rgb::from_planes(Size { width: 1, height: 1 }, planes).unwrap();
-        neutralise(&mut picture, &TREATMENT);
-        let [r, g, b] = picture.at(0, 0);
-        assert!((r - g).abs() < 1e-6 && (g - b).abs() < 1e-6 && r >= 2.0 - 1e-6, "{r} {g} {b}");
-    }
-
-    #[test]
-    fn a_saturated_red_light_keeps_its_hue() {
-        let mut picture =
-            Rgb::from_planes(Size { width: 1, height: 1 }, [vec![2.0], vec![0.2], vec![0.1]]).unwrap();
-        neutralise(&mut picture, &TREATMENT);
-        assert_eq!(picture.at(0, 0), [2.0, 0.2, 0.1]);
-    }
-}
+mod tests;

@@ -22,7 +22,8 @@ pub struct Histogram {
     pub clipped: [f64; 3],
 }
 
-/// Counts the samples of the active area. `saturation` is the light at which each channel clips.
+/// Counts the samples of the active area. `saturation` is the light at which each channel clips, before the file's
+/// corrections.
 pub fn histogram(capture: &Capture, linear: &LinearLight, saturation: [f32; 3]) -> Histogram {
     let area = capture.active_area;
     let layout = capture.counts.layout();
@@ -31,12 +32,18 @@ pub fn histogram(capture: &Capture, linear: &LinearLight, saturation: [f32; 3]) 
         let (mut bins, mut clipped) = ([[0u64; BINS]; 3], [0u64; 3]);
         let mut light = vec![0f32; area.width * layout.planes()];
         for y in rows.y..rows.bottom() {
-            linear.row(&capture.counts, area.x, y, &mut light);
-            for (&v, &c) in light.iter().zip(channels(layout, area.x, y, NO_CHANNEL).iter().cycle()) {
+            linear.levelled(&capture.counts, area.x, y, &mut light);
+            let channels = channels(layout, area.x, y, NO_CHANNEL);
+            for (&v, &c) in light.iter().zip(channels.iter().cycle()) {
+                if c != NO_CHANNEL {
+                    clipped[c] += u64::from(v >= limits[c]);
+                }
+            }
+            linear.correct(area.x, y, &mut light);
+            for (&v, &c) in light.iter().zip(channels.iter().cycle()) {
                 if let Some(bins) = bins.get_mut(c) {
                     let bin = (v.clamp(0.0, 1.0).sqrt() * BINS as f32) as usize;
                     bins[bin.min(BINS - 1)] += 1;
-                    clipped[c] += u64::from(v >= limits[c]);
                 }
             }
         }

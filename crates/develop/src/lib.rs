@@ -55,6 +55,7 @@ pub use whites::Whites;
 
 mod auto_exposure;
 mod auto_white;
+mod cones;
 mod finish;
 mod grid;
 mod in_turn;
@@ -64,6 +65,7 @@ mod tile;
 
 // The stages, in the order of the pipeline.
 pub mod balance;
+pub mod clipped_colours;
 pub mod correct;
 pub mod corrections;
 pub mod demosaic;

@@ -54,6 +54,11 @@ impl LinearLight {
         }
     }
 
+    /// Whether the file corrects its samples.
+    pub fn is_corrected(&self) -> bool {
+        !self.corrections.is_empty()
+    }
+
     /// Applies the file's corrections to levelled samples of row `y` from column `x` on.
     pub fn correct(&self, x: usize, y: usize, light: &mut [f32]) {
         if !self.corrections.is_empty() {

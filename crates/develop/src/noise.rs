@@ -78,6 +78,30 @@ impl Noise {
     }
 }
 
+/// Light between which windows tell of photons, not of reading or of clipping; shares of the white level.
+const OF_PHOTONS: (f32, f32) = (0.04, 0.45);
+
+/// Variance of the square roots of samples, not balanced, that counting photons makes; `None` where too few windows tell.
+pub(crate) fn of_photons(windows: &[Window]) -> Option<[f32; 3]> {
+    // Of a Bayer window a quarter are red, a half green, a quarter blue.
+    let samples = [0.25, 0.5, 0.25].map(|share| share * (WINDOW * WINDOW) as f32);
+    let of_channel = |c: usize| {
+        let is_told = |w: &&Window| (OF_PHOTONS.0..OF_PHOTONS.1).contains(&(w.light[c] / samples[c]));
+        let mut found: Vec<f32> =
+            windows.iter().filter(is_told).map(|w| w.bend_x[c].min(w.bend_y[c])).collect();
+        if found.len() < FEWEST_WINDOWS {
+            return None;
+        }
+        // The flattest fifth: the rest has texture.
+        let rank = found.len() / 5;
+        Some(*found.select_nth_unstable_by(rank, f32::total_cmp).1)
+    };
+    // Where one channel has no such light, it has the gain of the others.
+    let found = [0, 1, 2].map(of_channel);
+    let known = found.iter().flatten().copied().fold(f32::MAX, f32::min);
+    found.iter().any(Option::is_some).then(|| found.map(|v| v.unwrap_or(known)))
+}
+
 /// Half octave of a brightness: its exponent and the first bit of its mantissa.
 #[inline(always)]
 fn bin(brightness: f32) -> usize {

@@ -13,12 +13,11 @@ use crate::demosaic::Method;
 use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
 use crate::gamut::Primaries;
-use crate::highlights::{CLIPPED, Treatment};
+use crate::highlights::{CLIPPED, Rebuild, Treatment};
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::Noise;
 use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
-use crate::survey::Survey;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
 use crate::view::Scale;
@@ -258,16 +257,6 @@ fn treatment(analysis: &Analysis, wanted: Highlights, multipliers: [f32; 3]) -> 
     if wanted == Highlights::Clip {
         return Treatment::Clip { limit: limits.iter().fold(f32::MAX, |a, &b| a.min(b)) };
     }
-    Treatment::Rebuild { limits, offsets: offsets(survey, multipliers) }
-}
-
-/// Typical difference between a channel and the mean of the two others, balanced, where the picture begins to
-/// clip: in blocks that are whole, next to blocks that are not.
-fn offsets(survey: &Survey, multipliers: [f32; 3]) -> [f32; 3] {
-    let edges = &survey.edges;
-    [0, 1, 2].map(|c| {
-        let balanced = [0, 1, 2].map(|k| edges.sums[c][k] * f64::from(multipliers[k]));
-        let difference = balanced[c] - (balanced[(c + 1) % 3] + balanced[(c + 2) % 3]) / 2.0;
-        (difference / edges.counts[c].max(1.0)) as f32
-    })
+    let uneven = analysis.light().is_corrected() || !analysis.capture().picture_corrections.is_empty();
+    Treatment::Rebuild(Rebuild { limits, colours: analysis.clipped_colours(multipliers), uneven })
 }

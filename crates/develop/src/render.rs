@@ -14,7 +14,7 @@ use crate::in_turn::in_turn;
 use crate::plan::Plan;
 use crate::recipe::{Bits, OutputSpace};
 use crate::stage::{Stage, tile_border};
-use crate::tile::{Levelled, covered, tile};
+use crate::tile::{Levelled, covered, tile, tile_ends};
 use crate::transfer::Sample;
 use crate::view::{Cancel, Cancelled, Scale, View};
 use crate::{corrections, fringe};
@@ -97,7 +97,7 @@ impl Plan {
 
     /// Stages that change the mosaic before it becomes a picture.
     fn changes(&self) -> &'static [Stage] {
-        if matches!(self.highlights, Treatment::Rebuild { .. }) && self.demosaic != Method::None {
+        if matches!(self.highlights, Treatment::Rebuild(_)) && self.demosaic != Method::None {
             &[highlights::STAGE]
         } else {
             &[]
@@ -134,6 +134,8 @@ pub struct Render<'a> {
 struct Scratch<T> {
     denoised: denoise::Scratch,
     mosaic: Mosaic<f32>,
+    /// Where each sample of the mosaic clips, when the file's corrections make that differ.
+    ends: Vec<f32>,
     camera: Rgb<CameraSpace>,
     finish: Finish<T>,
 }
@@ -163,6 +165,7 @@ impl<'a> Render<'a> {
         Scratch {
             denoised: denoise::Scratch::default(),
             mosaic: Mosaic { size: nothing, layout, samples: Vec::new() },
+            ends: Vec::new(),
             camera: Rgb::black(nothing),
             finish: Finish::new(),
         }
@@ -210,7 +213,7 @@ impl<'a> Render<'a> {
     /// The pipeline down to camera RGB, for one rectangle of the grid.
     fn neighbourhood_stages<T>(&self, rect: Rect, scratch: &mut Scratch<T>) {
         let (plan, border, bin) = (self.plan, self.border, self.grid.bin);
-        let Scratch { denoised, mosaic, camera, .. } = scratch;
+        let Scratch { denoised, mosaic, ends, camera, .. } = scratch;
         let (x, y) = self.grid.corner(rect);
         let size = Size { width: rect.width * bin + 2 * border, height: rect.height * bin + 2 * border };
         let begin = (x - border as isize, y - border as isize);
@@ -226,7 +229,8 @@ impl<'a> Render<'a> {
             }
         };
         tile(capture, (light, levelled), plan.multipliers, begin, size, mosaic);
-        highlights::treat(mosaic, &plan.highlights);
+        tile_ends(plan, begin, size, ends);
+        highlights::treat(mosaic, begin, &plan.highlights, ends);
         match &self.reduction {
             Some(reduction) => reduction.reduce(mosaic, border, bin, begin, camera),
             None => {

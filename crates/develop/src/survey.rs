@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::highlights::CLIPPED;
 use crate::light::{LinearLight, channels, period};
+use crate::noise::Window;
 use crate::saturation::{BrightSamples, NO_CHANNEL};
 
 /// Smallest side of a block, in pixels; rounded up to whole periods of the filter array.
@@ -25,25 +26,21 @@ pub struct Block {
 pub struct Survey {
     /// Blocks in a row.
     pub columns: usize,
+    /// Pixels along the side of a block.
+    pub side: usize,
     /// All blocks, row by row.
     pub blocks: Vec<Block>,
     /// Share of the white level at which each channel clips.
     pub saturation: [f32; 3],
-    /// Light beside clipped places.
-    pub edges: ClippedEdges,
 }
 
-/// Sums over the blocks that are whole, next to blocks in which a channel is clipped.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ClippedEdges {
-    /// For each channel: mean light of red, green and blue, summed over the blocks beside those where it is clipped.
-    pub sums: [[f64; 3]; 3],
-    /// For each channel: how many such blocks there are.
-    pub counts: [f64; 3],
-}
-
-/// Looks at the active area of a capture.
-pub fn survey(capture: &Capture, linear: &LinearLight) -> Survey {
+/// Looks at the active area of a capture. What windows of noise show is asked for where channels may clip below the white
+/// level.
+pub(crate) fn survey<'a>(
+    capture: &Capture,
+    linear: &LinearLight,
+    noise: impl FnOnce() -> &'a [Window],
+) -> Survey {
     let area = capture.active_area;
     let side = block_side(capture, area);
     let (columns, rows) = (area.width / side, area.height / side);
@@ -58,13 +55,12 @@ pub fn survey(capture: &Capture, linear: &LinearLight) -> Survey {
         })
         .collect();
     let bright = strips.iter().map(|s| &s.bright).fold(BrightSamples::none(), BrightSamples::and);
-    let saturation = bright.saturation();
+    let saturation = bright.saturation(capture.counts.layout(), noise);
     let limits = saturation.map(|s| CLIPPED * s);
     let block =
         |seen: &Seen| Block { mean: seen.mean, clipped: [0, 1, 2].map(|c| seen.most[c] >= limits[c]) };
     let blocks: Vec<Block> = strips.iter().flat_map(|s| s.blocks.iter().map(block)).collect();
-    let edges = clipped_edges(&blocks, columns);
-    Survey { columns, blocks, saturation, edges }
+    Survey { columns, side, blocks, saturation }
 }
 
 /// Mean linear light of each channel in a rectangle of the frame (inside the active area).
@@ -92,7 +88,7 @@ fn block_side(capture: &Capture, area: Rect) -> usize {
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     mean: [f32; 3],
-    /// Brightest sample.
+    /// Brightest sample, before the file's corrections.
     most: [f32; 3],
 }
 
@@ -113,14 +109,22 @@ fn strip(capture: &Capture, linear: &LinearLight, place: Rect, side: usize, colu
     for (i, y) in (place.y..place.bottom()).enumerate() {
         linear.levelled(&capture.counts, place.x, y, &mut light);
         bright.count(&light, &channels(layout, place.x, y, NO_CHANNEL));
-        linear.correct(place.x, y, &mut light);
         let (sums, most) = &mut of_columns[i % rows];
+        // What is clipped shows before the file's corrections, how bright it is after them.
         vectorised(
             #[inline(always)]
             || {
-                for ((&v, sum), most) in light.iter().zip(sums.iter_mut()).zip(most.iter_mut()) {
-                    *sum += v;
+                for (&v, most) in light.iter().zip(most.iter_mut()) {
                     *most = if v > *most { v } else { *most };
+                }
+            },
+        );
+        linear.correct(place.x, y, &mut light);
+        vectorised(
+            #[inline(always)]
+            || {
+                for (&v, sum) in light.iter().zip(sums.iter_mut()) {
+                    *sum += v;
                 }
             },
         );
@@ -149,31 +153,4 @@ fn strip(capture: &Capture, linear: &LinearLight, place: Rect, side: usize, colu
         most: source.map(|c| most[c]),
     });
     Strip { blocks: blocks.collect(), bright }
-}
-
-fn clipped_edges(blocks: &[Block], columns: usize) -> ClippedEdges {
-    let mut edges = ClippedEdges::default();
-    if !blocks.iter().any(|b| b.clipped.contains(&true)) {
-        return edges;
-    }
-    let columns = columns.max(1);
-    let rows = blocks.len() / columns;
-    for (i, block) in blocks.iter().enumerate() {
-        if block.clipped.contains(&true) {
-            continue;
-        }
-        let (x, y) = (i % columns, i / columns);
-        let mut beside = [false; 3];
-        for v in y.saturating_sub(1)..(y + 2).min(rows) {
-            for u in x.saturating_sub(1)..(x + 2).min(columns) {
-                let clipped = blocks[v * columns + u].clipped;
-                beside = [0, 1, 2].map(|c| beside[c] || clipped[c]);
-            }
-        }
-        for c in (0..3).filter(|&c| beside[c]) {
-            edges.sums[c] = [0, 1, 2].map(|k| edges.sums[c][k] + f64::from(block.mean[k]));
-            edges.counts[c] += 1.0;
-        }
-    }
-    edges
 }

@@ -2,43 +2,52 @@
 //!
 //! The curve is log-logistic (Naka and Rushton's form of a receptor's response, J. Physiol. 185, 1966):
 //! f(x) = (1 + k) x^p / (x^p + k), so that 0 stays 0 and the level at which the sensor clips, 1, becomes white.
-//! p sets the contrast of the middle tones, k how they are lifted. It is applied to the largest and the smallest
-//! of R, G and B, and the middle one keeps its relative place between them: hue in the sense of HSV stays, and
-//! bright colours run to white.
+//! p sets the contrast of the middle tones, k how they are lifted. It is applied to the largest and the smallest of R, G and
+//! B. Between them lies the grey of the colour's lightness, and how far its brightness and its chroma go, follows: bright
+//! colours run to white, and where nothing is in the smallest channel a colour stays pure. Chroma then changes along the
+//! line of one hue of Oklab (`cones.rs`), not of R, G and B, in which blue turns purple and orange yellow on their way to
+//! white.
 
+use darkroot_colour::RgbSpace;
 use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Rgb, Scene, Toned};
 
 use crate::Look;
+use crate::cones::{self, Rows, along_hue, from_rgb, greater, lesser, rows};
 
 /// The curve of a look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curve {
-    /// Quarters of the exponent p: 4, 5 or 6.
+    /// Quarters of the exponent p: 5, 7 or 8.
     quarters: u8,
     k: f32,
-    /// Factor on the distance of each channel from the grey of the same lightness, after the curve.
+    /// Factor on the chroma that the curve gives.
     chroma: f32,
+    /// Rec. 2020 to responses.
+    to_cones: Rows,
 }
 
-/// Scene light of a grey card as cameras meter it (12.7 % of the clipping level, ISO 12232) and what it shall
-/// become: 18 % and a little.
+/// Scene light of a grey card as cameras meter it: 12.7 % of the clipping level (ISO 12232).
 const METERED_GREY: f64 = 0.127;
-const SHOWN_GREY: f64 = 0.19;
+/// Brighter scene light counts as this.
+const BRIGHTEST: f32 = 1e6;
+/// Darker greys count as this where they divide.
+const DARKEST: f32 = 1e-6;
 
 impl Curve {
     /// The curve of a look; `None` for the linear one.
     pub fn of(look: Look) -> Option<Self> {
-        let curve = |quarters: u8, chroma: f32| {
-            // Solved for f(METERED_GREY) = SHOWN_GREY.
+        // A metered grey is shown so that pictures are as bright as those of cameras (tests/compare/brightness.py).
+        let curve = |quarters: u8, shown_grey: f64, chroma: f32| {
+            // Solved for f(METERED_GREY) = shown_grey.
             let t = METERED_GREY.powf(f64::from(quarters) / 4.0);
-            let k = t * (1.0 - SHOWN_GREY) / (SHOWN_GREY - t);
-            Self { quarters, k: k as f32, chroma }
+            let k = t * (1.0 - shown_grey) / (shown_grey - t);
+            Self { quarters, k: k as f32, chroma, to_cones: rows(&from_rgb(&RgbSpace::REC2020)) }
         };
         match look {
-            Look::Neutral => Some(curve(5, 1.0)),
-            Look::Vivid => Some(curve(6, 1.15)),
-            Look::Flat => Some(curve(4, 1.0)),
+            Look::Neutral => Some(curve(7, 0.28, 1.0)),
+            Look::Vivid => Some(curve(8, 0.28, 1.15)),
+            Look::Flat => Some(curve(5, 0.24, 1.0)),
             Look::Linear => None,
         }
     }
@@ -46,13 +55,38 @@ impl Curve {
     /// Display light of scene light; 0 for negative, never more than 1.
     #[inline(always)]
     pub fn at(self, scene: f32) -> f32 {
-        let x = scene.clamp(0.0, 1e6);
+        let x = lesser(greater(scene, 0.0), BRIGHTEST);
         let power = match self.quarters {
-            4 => x,
             5 => x * x.sqrt().sqrt(),
-            _ => x * x.sqrt(),
+            7 => {
+                let root = x.sqrt();
+                x * root * root.sqrt()
+            }
+            _ => x * x,
         };
-        ((1.0 + self.k) * power / (power + self.k)).min(1.0)
+        lesser((1.0 + self.k) * power / (power + self.k), 1.0)
+    }
+
+    /// Responses to a colour of the scene, toned.
+    #[inline(always)]
+    fn shown(self, scene: [f32; 3]) -> [f32; 3] {
+        let scene = scene.map(|v| lesser(v, BRIGHTEST));
+        // Light below 0, of colours beyond Rec. 2020 and of noise, ends where light does; responses to it say more.
+        let high = greater(greater(greater(scene[0], scene[1]), scene[2]), 0.0);
+        let low = greater(lesser(lesser(scene[0], scene[1]), scene[2]), 0.0);
+        let (to_high, to_low) = (self.at(high), self.at(low));
+        // Grey has no span: it becomes `to_low`.
+        let span = high - low;
+        let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
+        let seen = cones::times(self.to_cones, scene).map(|v| greater(v, 0.0));
+        let grey = greater(cones::grey(seen), DARKEST);
+        let shown = greater(to_low + (grey - low) * slope, 0.0);
+        // Where the curve is steep, chroma grows, half as much as channels apart would let it: less so that of pure
+        // colours, which have nowhere to go.
+        let (more, spread) = (slope * grey - shown, 0.5 * low);
+        let chroma = if more > 0.0 { shown * grey + more * spread } else { slope * grey * grey };
+        let chroma = self.chroma * chroma / greater(shown * grey, f32::MIN_POSITIVE);
+        along_hue(seen, grey, chroma).map(|distance| shown + shown * distance)
     }
 }
 
@@ -63,68 +97,12 @@ pub fn tone(mut picture: Rgb<Scene>, curve: Curve) -> Rgb<Toned> {
         #[inline(always)]
         || {
             for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                let (high, low) = (r.max(*g).max(*b), r.min(*g).min(*b));
-                let (to_high, to_low) = (curve.at(high), curve.at(low));
-                // Grey has no span: every channel is then `low` and becomes `to_low`.
-                let span = high - low;
-                let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
-                let mut toned = [*r, *g, *b].map(|v| to_low + (v - low) * slope);
-                if curve.chroma > 1.0 {
-                    let grey = luminance(toned);
-                    toned = toned.map(|v| (grey + (v - grey) * curve.chroma).clamp(0.0, 1.0));
-                }
-                [*r, *g, *b] = toned.map(|v| v.min(1.0));
+                [*r, *g, *b] = curve.shown([*r, *g, *b]);
             }
         },
     );
     picture.into_space()
 }
 
-/// Luminance of linear Rec. 2020 (ITU-R BT.2020-2).
-#[inline(always)]
-pub(crate) fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    0.2627 * r + 0.6780 * g + 0.0593 * b
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use darkroot_photo::Size;
-
-    const LOOKS: [Look; 3] = [Look::Neutral, Look::Vivid, Look::Flat];
-
-    #[test]
-    fn every_curve_rises_from_black_to_white() {
-        for look in LOOKS {
-            let curve = Curve::of(look).unwrap();
-            let mut previous = curve.at(0.0);
-            assert!(previous.abs() < 1e-9, "{look:?}");
-            for i in 1..=2000 {
-                let now = curve.at(i as f32 / 1000.0);
-                assert!(now >= previous, "{look:?} at {i}");
-                previous = now;
-            }
-            assert!((curve.at(1.0) - 1.0).abs() < 1e-6, "{look:?}");
-            assert!((curve.at(METERED_GREY as f32) - SHOWN_GREY as f32).abs() < 1e-5, "{look:?}");
-        }
-    }
-
-    #[test]
-    fn grey_stays_grey_and_the_order_of_channels_stays() {
-        let colours = [[0.2f32, 0.2, 0.2], [0.7, 0.1, 0.3], [3.0, 2.9, 2.8], [-0.1, 0.5, 0.2]];
-        let plane = |c: usize| colours.iter().map(|v| v[c]).collect::<Vec<f32>>();
-        let size = Size { width: 4, height: 1 };
-        for look in LOOKS {
-            let picture = Rgb::from_planes(size, [plane(0), plane(1), plane(2)]).unwrap();
-            let toned = tone(picture, Curve::of(look).unwrap());
-            let grey = toned.at(0, 0);
-            assert!(
-                (grey[0] - grey[1]).abs() < 1e-6 && (grey[1] - grey[2]).abs() < 1e-6,
-                "{look:?} {grey:?}"
-            );
-            let red = toned.at(1, 0);
-            assert!(red[0] > red[2] && red[2] > red[1], "{look:?} {red:?}");
-            assert!((0..4).all(|x| toned.at(x, 0).iter().all(|v| (0.0..=1.0).contains(v))), "{look:?}");
-        }
-    }
-}
+mod tests;

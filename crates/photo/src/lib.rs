@@ -6,7 +6,7 @@
 //! | [`Mosaic<f32>`](Mosaic) | linear light under the same filters: 0 = black, 1 = saturated |
 //! | [`Rgb<Camera>`](Rgb) | linear, balanced so that the light's white is (1,1,1), one sensor's primaries; may be negative |
 //! | [`Rgb<Scene>`](Rgb) | scene-linear Rec. 2020, unbounded, white (1,1,1) |
-//! | [`Rgb<Toned>`](Rgb) | a look applied: Rec. 2020 light as a display shall show it, 0..=1 |
+//! | [`Rgb<Toned>`](Rgb) | a look applied: Oklab's cone-like responses to the light that a display shall show, 1 = white |
 //! | [`Rgb<Display>`](Rgb) | linear, output primaries; 0..=1 after a look, unbounded in the linear look |
 //! | [`Picture`] | the finished picture, interleaved, in the sample type of the file |
 //!

@@ -12,7 +12,7 @@ pub enum Camera {}
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scene {}
 
-/// Rec. 2020 light as a display shall show it, 0..=1: a look has been applied.
+/// Oklab's cone-like responses to the light that a display shall show, 1 = white: a look has been applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Toned {}
 

@@ -4,6 +4,7 @@
 #![allow(clippy::float_cmp)] // Some facts are about the same bits.
 
 mod black_level;
+mod clipping;
 mod corrections;
 mod crop;
 mod denoise;
@@ -12,6 +13,7 @@ mod grey;
 mod highlights;
 mod hostile;
 mod numbers;
+mod ramps;
 mod tiles;
 mod truth;
 mod views;
