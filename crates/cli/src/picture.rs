@@ -27,24 +27,9 @@ pub(crate) struct Picture {
 
 impl Picture {
     /// The layers of this run; what the options say is among them.
-    pub(crate) fn layers(&self) -> Result<Layers> {
-        Ok(self.layers_with(self.flags()?)?)
-    }
-
-    /// The same with what the options say already read.
-    pub(crate) fn layers_with(&self, flags: Layer) -> Result<Layers, RecipeError> {
-        Layers::new(self.recipe.as_deref(), flags, !self.no_recipes)
-    }
-
-    /// What the options say. A lamp's spectrum goes along in the text: workers and journals need no file then.
-    pub(crate) fn flags(&self) -> Result<Layer> {
-        let of_lamp = |key: Key, text: &str| match key.name() {
-            "illuminant" => darkroot::light::without_file(text),
-            _ => Ok(text.to_owned()),
-        };
-        let given = self.given.0.iter().map(|(key, text)| Ok((*key, of_lamp(*key, text)?)));
-        let given = given.collect::<Result<Vec<_>, darkroot::Error>>()?;
-        Ok(Layer::flags(given)?)
+    pub(crate) fn layers(&self) -> Result<Layers, RecipeError> {
+        let given = self.given.0.iter().map(|(key, text)| (*key, text.clone()));
+        Layers::new(self.recipe.as_deref(), Layer::flags(given)?, !self.no_recipes)
     }
 
     /// Whether white balance or profile were asked for.
@@ -109,6 +94,11 @@ fn option(key: Key) -> Arg {
         Kind::Number { .. } => {
             option.allow_hyphen_values(true).value_parser(move |text: &str| key.checked(text))
         }
+        // A lamp's spectrum goes along in the text: workers, journals and recipes need no file then.
+        Kind::Text { .. } if setting.name == "illuminant" => option.value_parser(move |text: &str| {
+            let text = darkroot::light::without_file(text).map_err(|fault| fault.to_string())?;
+            key.checked(&text).map_err(|fault| fault.to_string())
+        }),
         Kind::Text { .. } | Kind::File(_) => option.value_parser(move |text: &str| key.checked(text)),
     }
 }

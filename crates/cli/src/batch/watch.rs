@@ -65,8 +65,7 @@ impl Watch {
             shown.warn(&format!("{lines} torn or damaged lines of the journal are passed over"));
         }
         // Read anew each time: files of settings may have changed.
-        let flags = work.picture.flags()?;
-        let mut settings = || work.picture.layers_with(flags.clone()).map(SettingsByFile::new);
+        let mut settings = || work.picture.layers().map(SettingsByFile::new);
         let mut told = Told { shown, common, options: &options, stop: &stop, broken: None };
         let watched = watch(&mut batch, &options, &mut settings, &stop, &mut |notice| told.notice(&notice))?;
         told.end(&watched)?;
