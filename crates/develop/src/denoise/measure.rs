@@ -65,6 +65,9 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, limits: [f32; 3])
     let Layout::Cfa(cfa) = layout_from(capture.counts.layout(), area.x as isize, area.y as isize) else {
         return None;
     };
+    if area.width < WINDOW || area.height < WINDOW {
+        return None;
+    }
     let array = Array::of(&cfa);
     // Planes of an array other than Bayer's: red, the greens of even and of odd rows, blue.
     let channels = match &array {

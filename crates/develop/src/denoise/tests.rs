@@ -227,3 +227,14 @@ fn the_noise_under_x_trans_is_measured() {
         }
     }
 }
+
+#[test]
+fn a_frame_that_is_narrower_or_lower_than_a_window_tells_nothing() {
+    for letters in ["RGGB", X_TRANS] {
+        for (width, height) in [(1, 1000), (12, 2000), (1000, 1), (2000, 12)] {
+            let seen = capture(letters, Size { width, height }, 4, scene);
+            let light = LinearLight::of(&seen);
+            assert!(super::measured(&seen, &light, [1.0; 3]).is_none(), "{letters} {width} x {height}");
+        }
+    }
+}
