@@ -53,6 +53,7 @@ pub(super) fn found(
     let black = model.channels.iter().map(|line| line.at(0.0)).fold(f32::MAX, f32::min).sqrt();
     let scale = capture.white.0.iter().fold(f32::MAX, |a, &b| a.min(b)) - capture.black.mean();
     let least = (FAR * black * scale * 0.5).clamp(1.0, 60_000.0) as u16;
+    let darkest = capture.black.values.iter().fold(0f32, |a, &b| a.max(b)).ceil() as u16;
     let of_rows = |rows: &[usize]| {
         let mut found = Vec::new();
         let mut flags = vec![0u16; columns.len()];
@@ -61,7 +62,8 @@ pub(super) fn found(
                 let begin = (y * width + columns.start).wrapping_add_signed(shift);
                 &counts.samples[begin..begin + columns.len()]
             };
-            outliers(row(y, 0), [row(y, -2), row(y, 2), row(y - 2, 0), row(y + 2, 0)], least, &mut flags);
+            let around = [row(y, -2), row(y, 2), row(y - 2, 0), row(y + 2, 0)];
+            outliers(row(y, 0), around, (least, darkest), &mut flags);
             for (run, flags) in flags.chunks(RUN).enumerate() {
                 if flags.iter().fold(0, |any, flag| any | flag) == 0 {
                     continue;
@@ -86,8 +88,9 @@ pub(super) fn found(
     if found.len() * RARE > area.width * area.height { Vec::new() } else { found }
 }
 
-/// Marks samples that lie `least` counts above all of these or below all of them.
-fn outliers(samples: &[u16], around: [&[u16]; 4], least: u16, flags: &mut [u16]) {
+/// Marks samples that lie more than `least` counts above all of these or below all of them, and by nearly half ([`SHARE`]) of
+/// the light of the nearest, whose black is at most `black`.
+fn outliers(samples: &[u16], around: [&[u16]; 4], (least, black): (u16, u16), flags: &mut [u16]) {
     vectorised(
         #[inline(always)]
         || {
@@ -97,8 +100,11 @@ fn outliers(samples: &[u16], around: [&[u16]; 4], least: u16, flags: &mut [u16])
             for i in 0..n {
                 let most = a[i].max(b[i]).max(c[i].max(d[i]));
                 let fewest = a[i].min(b[i]).min(c[i].min(d[i]));
-                let above = samples[i].saturating_sub(most).max(fewest.saturating_sub(samples[i]));
-                flags[i] = above.saturating_sub(least);
+                let (rise, fall) = (samples[i].saturating_sub(most), fewest.saturating_sub(samples[i]));
+                // A little less than half: whatever is rounded, nothing is missed.
+                let share = |edge: u16| edge.saturating_sub(black) / 32 * 15;
+                let far = rise.saturating_sub(share(most)).max(fall.saturating_sub(share(fewest)));
+                flags[i] = far.min(rise.max(fall).saturating_sub(least));
             }
         },
     );
