@@ -13,7 +13,7 @@ const BLOCK: usize = 1 << 20;
 
 /// Of bytes.
 pub(crate) fn bytes(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
+    files::sha256(bytes)
 }
 
 /// Of a text.

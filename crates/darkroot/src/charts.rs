@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use darkroot_chart::{ChartLayout, Reference, ReferenceColour};
-use sha2::{Digest, Sha256};
 
 use crate::fault::ChartError;
 use crate::{Error, files};
@@ -34,8 +33,7 @@ pub fn layout(text: &str) -> Result<ChartLayout, Error> {
     }
     let path = Path::new(text);
     if path.is_file() {
-        let content = String::from_utf8(files::read_text(path)?);
-        let content = content.map_err(|_| Error::chart(path, ChartError::NotText))?;
+        let content = read(path)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let toml = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let read =
@@ -43,6 +41,11 @@ pub fn layout(text: &str) -> Result<ChartLayout, Error> {
         return read.map_err(|e| Error::chart(path, e));
     }
     Err(Error::chart(path, ChartError::UnknownChart))
+}
+
+/// A file that describes charts or their patches, as text.
+pub(crate) fn read(path: &Path) -> Result<String, Error> {
+    String::from_utf8(files::read_text(path)?).map_err(|_| Error::chart(path, ChartError::NotText))
 }
 
 /// Names of the charts that are built in.
@@ -78,11 +81,8 @@ pub fn reference(text: Option<&str>, layout: &ChartLayout) -> Result<NamedRefere
         return Ok(found);
     }
     let path = Path::new(text);
-    let bytes = files::read_text(path)?;
-    let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
-    let Ok(content) = String::from_utf8(bytes) else {
-        return fault(ChartError::NotText);
-    };
+    let content = read(path)?;
+    let sha256 = files::sha256(content.as_bytes());
     let colours = match Reference::parse(&content) {
         Ok(colours) => colours,
         Err(e) => return fault(e.into()),

@@ -9,11 +9,10 @@ use darkroot_chart::reference::{PhotographedPatch, photographed};
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::{Vector3, Xyz, white};
 use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
-use sha2::{Digest, Sha256};
 
 use crate::fault::ChartError;
 use crate::light::LightSource;
-use crate::{Error, files};
+use crate::{Error, charts, files};
 
 /// What a profile is made from.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,10 +47,10 @@ pub struct TableProfile {
 pub fn from_table(request: &FromTable) -> Result<TableProfile, Error> {
     let (mut lights, mut names, mut hashes) = (Vec::new(), Vec::new(), Vec::new());
     for (path, light) in &request.tables {
-        let bytes = files::read_text(path)?;
-        hashes.push(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect::<String>());
+        let text = charts::read(path)?;
+        hashes.push(files::sha256(text.as_bytes()));
         names.push(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
-        let patches = read(path, bytes, light, request)?;
+        let patches = patches(path, &text, light, request)?;
         // Colours measured in the light need no spectrum of it, and would be wrong by one.
         let seen_in = match request.measured_in_light {
             true => LightSource { spectrum: None, ..light.clone() },
@@ -80,14 +79,13 @@ pub fn from_table(request: &FromTable) -> Result<TableProfile, Error> {
 }
 
 /// The patches of a table, as a shot would have given them.
-fn read(
+fn patches(
     path: &Path,
-    bytes: Vec<u8>,
+    text: &str,
     light: &LightSource,
     request: &FromTable,
 ) -> Result<Vec<MeasuredPatch>, Error> {
-    let text = String::from_utf8(bytes).map_err(|_| Error::chart(path, ChartError::NotText))?;
-    let patches = photographed(&text).map_err(|e| Error::chart(path, e))?;
+    let patches = photographed(text).map_err(|e| Error::chart(path, e))?;
     let named = |name: &String| patches.iter().any(|p| p.name.eq_ignore_ascii_case(name));
     if let Some(name) = request.exclude.iter().find(|name| !named(name)) {
         return Err(Error::chart(path, ChartError::NoPatch { name: name.clone() }));

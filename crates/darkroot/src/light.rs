@@ -23,12 +23,13 @@ pub fn find(text: &str) -> Result<LightSource, Error> {
 /// # Errors
 /// The file cannot be used.
 pub fn without_file(text: &str) -> Result<String, Error> {
-    let path = Path::new(text.split_once(':').map_or(text, |(path, _)| path));
-    if LightSource::by_name(text).is_some() || !is_file_name(path) {
+    if LightSource::by_name(text).is_some() {
         return Ok(text.to_owned());
     }
-    let light = of_file(text)?;
-    Ok(light.text().unwrap_or_else(|| text.to_owned()))
+    match of_file(text) {
+        Err(Error::Light { .. }) => Ok(text.to_owned()),
+        light => Ok(light?.text().unwrap_or_else(|| text.to_owned())),
+    }
 }
 
 /// What a person can name, in words.

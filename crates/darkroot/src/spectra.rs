@@ -7,7 +7,6 @@ use std::path::Path;
 
 use darkroot_colour::Spectrum;
 use darkroot_colour::measured::Measured;
-use sha2::{Digest, Sha256};
 
 use darkroot_profile::Sensitivities;
 
@@ -53,7 +52,7 @@ impl SpectraFile {
 /// A file that cannot be read, or is not laid out as above.
 pub fn read(path: &Path) -> Result<SpectraFile, Error> {
     let bytes = files::read_text(path)?;
-    let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+    let sha256 = files::sha256(&bytes);
     let wrong = |fault: SpectraError| Error::spectra(path, fault);
     let text = String::from_utf8(bytes).map_err(|_| wrong(SpectraError::NotText))?;
     let spectra = parse(&text).map_err(wrong)?;

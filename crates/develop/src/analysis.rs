@@ -23,7 +23,8 @@ pub struct Analysis {
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
     samples_noise: OnceLock<Option<Measured>>,
-    mends: OnceLock<Arc<Mends>>,
+    /// Without hot and dead pixels, and with them.
+    mends: [OnceLock<Arc<Mends>>; 2],
     denoiser: Mutex<Option<Arc<Denoiser>>>,
     colours: OnceLock<Option<Seen>>,
     /// For the multipliers that were asked for last: a person who drags another setting keeps them.
@@ -40,7 +41,7 @@ impl Analysis {
             survey: OnceLock::new(),
             noise: OnceLock::new(),
             samples_noise: OnceLock::new(),
-            mends: OnceLock::new(),
+            mends: [OnceLock::new(), OnceLock::new()],
             denoiser: Mutex::new(None),
             colours: OnceLock::new(),
             clipped: Mutex::new(None),
@@ -102,13 +103,16 @@ impl Analysis {
         self.samples_noise.get_or_init(measured).as_ref()
     }
 
-    /// What is to be put right in single samples; nothing in a clean picture.
-    pub(crate) fn mends(&self) -> &Arc<Mends> {
+    /// What is to be put right in single samples, hot and dead ones among them or not; nothing in a clean picture.
+    pub(crate) fn mends(&self, hot_pixels: bool) -> &Arc<Mends> {
         let found = || {
             let (model, measured) = (self.noise_model()?, self.measured_noise()?);
-            Some(Mends::of(&self.capture, &self.light, &model, measured))
+            Some(match hot_pixels {
+                true => Mends::of(&self.capture, &self.light, &model, measured),
+                false => Mends::of_greens(&self.capture, measured),
+            })
         };
-        self.mends.get_or_init(|| Arc::new(found().unwrap_or_default()))
+        self.mends[usize::from(hot_pixels)].get_or_init(|| Arc::new(found().unwrap_or_default()))
     }
 
     /// The filter for noise: the last one, with what it knows of the frame, where the same is asked for again.

@@ -163,8 +163,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
 fn mends(analysis: &Analysis, hot_pixels: HotPixels, measuring: bool) -> Arc<Mends> {
     match hot_pixels {
         _ if measuring || analysis.capture().rendered => Arc::default(),
-        HotPixels::Auto => Arc::clone(analysis.mends()),
-        HotPixels::Off => Arc::new(analysis.mends().without_pixels()),
+        wanted => Arc::clone(analysis.mends(wanted == HotPixels::Auto)),
     }
 }
 

@@ -135,7 +135,7 @@ struct Scratch<T> {
     denoised: denoise::Scratch,
     mosaic: Mosaic<f32>,
     /// Where each sample of the mosaic clips, when the file's corrections make that differ.
-    ends: Vec<f32>,
+    ends: Mosaic<f32>,
     camera: Rgb<CameraSpace>,
     finish: Finish<T>,
 }
@@ -164,8 +164,8 @@ impl<'a> Render<'a> {
         let layout = self.plan.capture.counts.layout().clone();
         Scratch {
             denoised: denoise::Scratch::default(),
-            mosaic: Mosaic { size: nothing, layout, samples: Vec::new() },
-            ends: Vec::new(),
+            mosaic: Mosaic { size: nothing, layout: layout.clone(), samples: Vec::new() },
+            ends: Mosaic { size: nothing, layout, samples: Vec::new() },
             camera: Rgb::black(nothing),
             finish: Finish::new(),
         }
@@ -219,10 +219,7 @@ impl<'a> Render<'a> {
         let begin = (x - border as isize, y - border as isize);
         let (capture, light) = (&*plan.capture, &*plan.light);
         let levelled: &Levelled<'_> = match &self.denoiser {
-            None => &|x, y, row| {
-                light.levelled(&capture.counts, x, y, row);
-                plan.mends.row(x, y, row);
-            },
+            None => &|x, y, row| plan.mends.levelled(capture, light, (x, y), row),
             Some((filter, coarse)) => {
                 filter.denoise((capture, light), coarse, covered(capture, begin, size), denoised);
                 &|x, y, row| denoised.row(x, y, row)
@@ -230,7 +227,7 @@ impl<'a> Render<'a> {
         };
         tile(capture, (light, levelled), plan.multipliers, begin, size, mosaic);
         tile_ends(plan, begin, size, ends);
-        highlights::treat(mosaic, begin, &plan.highlights, ends);
+        highlights::treat(mosaic, begin, &plan.highlights, &ends.samples);
         match &self.reduction {
             Some(reduction) => reduction.reduce(mosaic, border, bin, begin, camera),
             None => {

@@ -67,30 +67,17 @@ pub(crate) fn covered(capture: &Capture, (x, y): (isize, isize), size: Size) -> 
 
 /// Makes `ends` the balanced light at which each sample of such a tile clips, where highlights are rebuilt and the file's
 /// corrections make that differ from place to place; empties it elsewhere.
-pub(crate) fn tile_ends(plan: &Plan, (x, y): (isize, isize), size: Size, ends: &mut Vec<f32>) {
-    ends.clear();
+pub(crate) fn tile_ends(plan: &Plan, begin: (isize, isize), size: Size, ends: &mut Mosaic<f32>) {
+    ends.samples.clear();
     let (Treatment::Rebuild(rebuild), true) = (&plan.highlights, plan.light.is_corrected()) else { return };
-    let (capture, area) = (&plan.capture, plan.capture.active_area);
-    let stored = capture.counts.layout();
-    let (planes, period) = (stored.planes(), period(stored));
-    let columns: Vec<usize> =
-        (0..size.width).map(|i| inside(x + i as isize, area.x, area.width, period.0)).collect();
-    let (Some(&first), Some(&last)) = (columns.iter().min(), columns.iter().max()) else {
-        return;
-    };
     let saturation = [0, 1, 2].map(|c| rebuild.limits[c] / plan.multipliers[c]);
-    let mut row = vec![0f32; (last - first + 1) * planes];
-    for i in 0..size.height {
-        let y = inside(y + i as isize, area.y, area.height, period.1);
-        for (end, c) in row.iter_mut().zip(channels(stored, first, y, 1).into_iter().cycle()) {
+    let stored = plan.capture.counts.layout();
+    let saturated = |x: usize, y: usize, row: &mut [f32]| {
+        for (end, c) in row.iter_mut().zip(channels(stored, x, y, 1).into_iter().cycle()) {
             *end = saturation[c];
         }
-        plan.light.correct(first, y, &mut row);
-        balance::row(&mut row, stored, plan.multipliers, first, y);
-        for x in &columns {
-            ends.extend_from_slice(&row[(x - first) * planes..][..planes]);
-        }
-    }
+    };
+    tile(&plan.capture, (&plan.light, &saturated), plan.multipliers, begin, size, ends);
 }
 
 /// The column (row) inside an area that stands for column `at`; `start` and `length` are the area's.

@@ -6,18 +6,19 @@
 use std::path::{Path, PathBuf};
 
 use darkroot_colour::adaptation::bradford;
-use darkroot_colour::{Matrix3, Spectrum, Vector3, Xyz};
+use darkroot_colour::{Matrix3, Spectrum, Vector3};
 use darkroot_profile::camera::{
     Difference, KnownCamera, Observation, Peers, Posterior, Regression, computed, families, light,
 };
 use darkroot_profile::fit::virtual_set::VirtualSet;
-use darkroot_profile::fit::{Samples, fit, root_set};
-use darkroot_profile::{Errors, Kind, Model, Sensitivities, Summary};
+use darkroot_profile::fit::{fit, root_set};
+use darkroot_profile::{Kind, Model, Sensitivities, Summary};
 use rayon::prelude::*;
 
 use super::ReflectanceSet;
 use super::cameras::{cut, names, without_judged};
 use super::published::{Published, named};
+use super::seen::Seen;
 use crate::fault::SpectraError;
 use crate::light::LightSource;
 use crate::{Error, ProfileStore, spectra};
@@ -184,27 +185,13 @@ fn judge(
         let samples = camera_there.render(&chart.reflectances, &spectrum).map_err(|e| fault(e.into()))?;
         methods.push((Method::Chart, fit(&samples, Kind::Linear).map_err(|e| fault(e.into()))?.fit.model));
     }
-    let render =
-        |set: &ReflectanceSet| camera_there.render(&set.reflectances, &spectrum).map_err(|e| fault(e.into()));
-    let sets = request.judged.iter().map(render).collect::<Result<Vec<_>, _>>()?;
-    let of_set = |model: &Model| sets.iter().map(|samples| errors(model, samples).mean).collect();
-    let all = Samples::new(
-        sets.iter().flat_map(|s| s.rgb().to_vec()).collect(),
-        sets.iter().flat_map(|s| s.xyz().to_vec()).collect(),
-        spectrum.white(),
-    );
-    let all = all.map_err(|e| fault(e.into()))?;
+    let judged = Seen::by(&camera_there, &spectrum, &request.judged).map_err(|e| fault(e.into()))?;
     Ok(Judgement {
         camera: camera.name.clone(),
         light: name.to_owned(),
-        errors: methods.iter().map(|(method, model)| (*method, errors(model, &all))).collect(),
-        sets: methods.iter().map(|(method, model)| (*method, of_set(model))).collect(),
+        errors: methods.iter().map(|(method, model)| (*method, judged.errors(model))).collect(),
+        sets: methods.iter().map(|(method, model)| (*method, judged.means(model))).collect(),
     })
-}
-
-fn errors(model: &Model, samples: &Samples) -> Summary {
-    let estimates: Vec<Xyz> = samples.rgb().iter().map(|rgb| model.xyz(*rgb)).collect();
-    Errors::between(&estimates, samples.xyz(), samples.white()).de2000
 }
 
 /// Cameras that would tell of each other: of one name, or with one published matrix.

@@ -6,16 +6,17 @@
 use std::path::PathBuf;
 
 use darkroot_calibrate::CalibrateError;
-use darkroot_colour::{Spectrum, Xyz};
+use darkroot_colour::Spectrum;
 use darkroot_profile::fit::population::Population;
 use darkroot_profile::fit::prior::Prior;
 use darkroot_profile::fit::virtual_set::VirtualSet;
-use darkroot_profile::fit::{Knowledge, Samples, fit, spectral};
-use darkroot_profile::{Errors, Kind, Order, Sensitivities, Summary};
+use darkroot_profile::fit::{Knowledge, fit, spectral};
+use darkroot_profile::{Kind, Order, Sensitivities, Summary};
 use rayon::prelude::*;
 
 use super::ReflectanceSet;
 use super::cameras::{cut, names, without_judged};
+use super::seen::Seen;
 use crate::light::LightSource;
 use crate::{Error, ProfileStore, spectra};
 
@@ -114,16 +115,9 @@ fn judge(
     let fault = |source: CalibrateError| Error::fit(light, source);
     let spectrum = light.spectrum.as_ref().ok_or_else(|| fault(CalibrateError::NoSpectrum))?;
     let spectrum = cut(spectrum, request.between);
-    let seen = camera.sensitivities.under(&spectrum).ok_or_else(|| fault(CalibrateError::BlindChannel))?;
-    let render = |surfaces: &[Spectrum]| seen.render(surfaces, &spectrum).map_err(|e| fault(e.into()));
-    let chart = render(&request.chart.reflectances)?;
-    let sets = request.judged.iter().map(|set| render(&set.reflectances)).collect::<Result<Vec<_>, _>>()?;
-    let all = Samples::new(
-        sets.iter().flat_map(|s| s.rgb().to_vec()).collect(),
-        sets.iter().flat_map(|s| s.xyz().to_vec()).collect(),
-        spectrum.white(),
-    );
-    let all = all.map_err(|e| fault(e.into()))?;
+    let there = camera.sensitivities.under(&spectrum).ok_or_else(|| fault(CalibrateError::BlindChannel))?;
+    let chart = there.render(&request.chart.reflectances, &spectrum).map_err(|e| fault(e.into()))?;
+    let judged = Seen::by(&there, &spectrum, &request.judged).map_err(|e| fault(e.into()))?;
     let prior = Prior::under(population, &spectrum).ok_or(Error::Prior)?;
     let reflectances = &request.chart.reflectances;
     let knowledge = Knowledge { reflectances, light: &spectrum, prior: &prior, set };
@@ -133,16 +127,12 @@ fn judge(
             _ => fit(&chart, kind).map(|found| found.fit.model),
         };
         let model = model.map_err(|e| fault(e.into()))?;
-        let errors = |samples: &Samples| {
-            let estimates: Vec<Xyz> = samples.rgb().iter().map(|rgb| model.xyz(*rgb)).collect();
-            Errors::between(&estimates, samples.xyz(), samples.white()).de2000
-        };
         Ok(Judgement {
             camera: camera.names[0].clone(),
             light: light.light.name.clone(),
             kind,
-            errors: errors(&all),
-            sets: sets.iter().map(|set| errors(set).mean).collect(),
+            errors: judged.errors(&model),
+            sets: judged.means(&model),
         })
     };
     MODELS.into_iter().map(one).collect()

@@ -16,7 +16,7 @@ use darkroot_profile::{Errors, Kind};
 use super::MODELS;
 use crate::fault::ChartError;
 use crate::shot::{self, ShotOptions};
-use crate::{Error, Settings, files, shown};
+use crate::{Error, Settings, charts, shown};
 
 /// Factors of light that are simulated from the first shot, as in the paper.
 const FACTORS: [f64; 2] = [1.1, 1.2];
@@ -60,8 +60,11 @@ struct Seen {
 pub fn levels(request: &Levels, settings: &Settings) -> Result<(usize, Vec<Level>), Error> {
     let seen =
         request.shots.iter().map(|pair| see(pair, request, settings)).collect::<Result<Vec<_>, _>>()?;
-    let usable: Vec<usize> = usable(&seen, request);
-    let taken = |seen: &Seen| Seen {
+    let whole = |i: usize| seen.iter().all(|(_, whole)| whole[i]);
+    let patches = 0..request.layout.patches.len();
+    let usable: Vec<usize> =
+        patches.filter(|i| whole(*i) && (!request.inner || is_inner(*i, request))).collect();
+    let taken = |(seen, _): &(Seen, Vec<bool>)| Seen {
         rgb: usable.iter().map(|i| seen.rgb[*i]).collect(),
         xyz: usable.iter().map(|i| seen.xyz[*i]).collect(),
         white: seen.white,
@@ -94,17 +97,19 @@ pub fn levels(request: &Levels, settings: &Settings) -> Result<(usize, Vec<Level
     Ok((usable.len(), levels))
 }
 
-/// Measures a shot and reads what an instrument made of its patches.
-fn see((path, table): &(PathBuf, PathBuf), request: &Levels, settings: &Settings) -> Result<Seen, Error> {
+/// Measures a shot and reads what an instrument made of its patches; and which of them the shot has whole.
+fn see(
+    (path, table): &(PathBuf, PathBuf),
+    request: &Levels,
+    settings: &Settings,
+) -> Result<(Seen, Vec<bool>), Error> {
     let layout = &request.layout;
     // Only to find the chart and its brightest patch: what the patches are stands in the table.
     let maker = layout.patches.iter().map(|p| (p.name.clone(), ReferenceColour::Lab(p.lab)));
     let maker = Reference { patches: maker.collect() };
     let (shot, _) = shot::open(path, layout, &maker, &request.options, settings)?;
     let names: Vec<&str> = layout.patches.iter().map(|p| p.name.as_str()).collect();
-    let text = String::from_utf8(files::read_text(table)?);
-    let text = text.map_err(|_| Error::chart(table, ChartError::NotText))?;
-    let measured = Reference::parse(&text).map_err(|e| Error::chart(table, e))?;
+    let measured = Reference::parse(&charts::read(table)?).map_err(|e| Error::chart(table, e))?;
     let colours = measured.for_patches(&names).map_err(|e| Error::chart(table, e))?;
     let xyz = colours.into_iter().map(|colour| match colour {
         ReferenceColour::Xyz(xyz) => Ok(xyz),
@@ -114,21 +119,15 @@ fn see((path, table): &(PathBuf, PathBuf), request: &Levels, settings: &Settings
     let expected: Vec<f64> = layout.patches.iter().map(|p| p.lab.xyz(white::D50).y).collect();
     let brightest = (0..expected.len()).max_by(|a, b| expected[*a].total_cmp(&expected[*b])).unwrap_or(0);
     let diffuser = xyz[brightest].scaled(1.0 / expected[brightest].max(1e-6));
-    let excluded = shot.patches.iter().map(|p| p.excluded.is_some());
-    let rgb =
-        shot.patches.iter().zip(excluded).map(|(p, out)| if out { [f64::NAN; 3] } else { p.rgb }).collect();
-    Ok(Seen { rgb, xyz, white: diffuser })
+    let (rgb, whole) = shot.patches.iter().map(|p| (p.rgb, p.excluded.is_none())).unzip();
+    Ok((Seen { rgb, xyz, white: diffuser }, whole))
 }
 
-/// Patches that every shot has whole.
-fn usable(seen: &[Seen], request: &Levels) -> Vec<usize> {
+/// Whether a patch does not lie at the border of the chart.
+fn is_inner(patch: usize, request: &Levels) -> bool {
     let ChartLayout { columns, rows, .. } = request.layout;
-    let is_inner = |i: usize| {
-        let (x, y) = (i % columns, i / columns);
-        x > 0 && y > 0 && x + 1 < columns && y + 1 < rows
-    };
-    let whole = |i: usize| seen.iter().all(|s| s.rgb[i].iter().all(|v| v.is_finite()));
-    (0..request.layout.patches.len()).filter(|i| whole(*i) && (!request.inner || is_inner(*i))).collect()
+    let (x, y) = (patch % columns, patch / columns);
+    x > 0 && y > 0 && x + 1 < columns && y + 1 < rows
 }
 
 // Finlayson, Mackiewicz and Hurlbert, "Root-Polynomial Colour Correction", CIC 19, 2011, table 3: Nikon D60, 96 patches of

@@ -7,5 +7,6 @@ pub mod held_out;
 pub mod levels;
 pub mod papers;
 pub mod published;
+mod seen;
 
 pub use papers::{MODELS, ReflectanceSet, Row, in_brief, read_set, table};

@@ -23,6 +23,8 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use sha2::{Digest, Sha256};
+
 use crate::Error;
 
 /// The largest file that is read, in bytes: three times what a raw file of 400 megapixels has.
@@ -96,6 +98,11 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Error> {
 /// As [`read`].
 pub fn read_text(path: &Path) -> Result<Vec<u8>, Error> {
     read_up_to(path, LARGEST_TEXT)
+}
+
+/// SHA-256 of a file's bytes, hexadecimal, as `sha256sum` prints it.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// Reads a file of at most so many bytes.

@@ -5,6 +5,8 @@
 pub mod setting;
 pub use setting::{Changes, Group, Kind, Setting, Word};
 
+mod words;
+
 pub mod table;
 pub use table::SETTINGS;
 

@@ -3,85 +3,12 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
-use darkroot_develop::{Balance, Bits, Crop, Demosaic, Highlights, HotPixels, Look};
-use darkroot_encode::{ChromaSubsampling, Format};
-use darkroot_raw::Decoder;
-
-use super::Engine;
-use super::setting::{Changes, Group, Kind, Setting, Word};
+use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, balance, denoise, light, number, one_of, profile, space};
-
-const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
-    Word { word, also: "", value, help }
-}
-
-/// A word with another form.
-const fn either<T>(word: &'static str, also: &'static str, value: T) -> Word<T> {
-    Word { word, also, value, help: "" }
-}
-
-/// The words alone.
-const fn plain<T, const N: usize>(words: &[Word<T>; N]) -> [Word<()>; N] {
-    let mut plain = [word("", (), ""); N];
-    let mut i = 0;
-    while i < N {
-        plain[i] = Word { word: words[i].word, also: words[i].also, value: (), help: words[i].help };
-        i += 1;
-    }
-    plain
-}
-
-pub(super) const AUTO: &str = "auto";
-
-pub(super) const FORMATS: [Word<Option<Format>>; 8] = [
-    word(AUTO, None, "By the output's ending, else JPEG, or TIFF for linear light"),
-    either("jpeg", "jpg", Some(Format::Jpeg)),
-    word("png", Some(Format::Png), ""),
-    either("tiff", "tif", Some(Format::Tiff)),
-    word("webp", Some(Format::Webp), ""),
-    word("avif", Some(Format::Avif), ""),
-    word("exr", Some(Format::Exr), ""),
-    word("jxl", Some(Format::Jxl), ""),
-];
-pub(super) const BITS: [Word<Option<Bits>>; 4] = [
-    word(AUTO, None, "What suits the format: 8, 16 in TIFF, 32 in OpenEXR"),
-    word("8", Some(Bits::Eight), ""),
-    word("16", Some(Bits::Sixteen), ""),
-    word("32", Some(Bits::Float), ""),
-];
-pub(super) const CHROMA: [Word<ChromaSubsampling>; 3] = [
-    word("444", ChromaSubsampling::S444, ""),
-    word("422", ChromaSubsampling::S422, ""),
-    word("420", ChromaSubsampling::S420, ""),
-];
-pub(super) const SWITCH: [Word<bool>; 2] = [word("true", true, ""), word("false", false, "")];
-pub(super) const LOOKS: [Word<Look>; 4] = [
-    word("neutral", Look::Neutral, "Gentle contrast, soft highlights, colours as measured"),
-    word("vivid", Look::Vivid, "More contrast and chroma"),
-    word("flat", Look::Flat, "Low contrast, for further editing"),
-    word("linear", Look::Linear, "Strictly scene-linear, for measurement"),
-];
-pub(super) const HIGHLIGHTS: [Word<Highlights>; 3] = [
-    word("rebuild", Highlights::Rebuild, "Estimate clipped channels from the others"),
-    word("clip", Highlights::Clip, "Cut all channels where the first one clips"),
-    word("keep", Highlights::Keep, "Leave the values as they are"),
-];
-pub(super) const HOT_PIXELS: [Word<HotPixels>; 2] = [
-    word(AUTO, HotPixels::Auto, "They take the light of those around them; stars stay"),
-    word("off", HotPixels::Off, "They stay"),
-];
-pub(super) const DEMOSAIC: [Word<Demosaic>; 2] = [
-    word("best", Demosaic::Best, "The best for the sensor"),
-    word("bilinear", Demosaic::Bilinear, "Fast and soft"),
-];
-pub(super) const CROPS: [Word<Crop>; 2] = [
-    word("default", Crop::Default, "What the maker shows"),
-    word("active", Crop::Active, "Everything that light falls on"),
-];
-pub(super) const ENGINES: [Word<Engine>; 2] =
-    [word("darkroot", Engine::Darkroot, ""), word("imagepipe", Engine::Imagepipe, "")];
-pub(super) const DECODERS: [Word<Decoder>; 2] =
-    [word("flashraw", Decoder::Flashraw, ""), word("rawloader", Decoder::Rawloader, "")];
+use super::words::{
+    AUTO, BITS, CHROMA, CROPS, DECODERS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH,
+    plain,
+};
 
 /// Writes what a text means into its place.
 fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
@@ -195,7 +122,7 @@ pub const SETTINGS: [Setting; 21] = [
         placeholder: "WB",
         help: "as-shot, daylight, auto, 5200K, 5200K,+8 (tint), spot:X,Y[,SIDE] (grey in the picture), or R,G,B",
         changes: Changes::Picture,
-        set: |to, text| put::<Balance>(&mut to.recipe.balance, balance(text)),
+        set: |to, text| put(&mut to.recipe.balance, balance(text)),
     },
     Setting {
         name: "look",

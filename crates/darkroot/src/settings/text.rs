@@ -6,7 +6,7 @@ use darkroot_raw::Decoder;
 use super::ProfileChoice;
 use super::setting::{Kind, Setting, Word};
 use super::spaces::{self, SPACES};
-use super::table::{AUTO, DECODERS, SWITCH};
+use super::words::{AUTO, DECODERS, SWITCH};
 use crate::light::LightSource;
 
 /// A text that is no value. The message says what is.
@@ -203,7 +203,7 @@ pub fn numbers<T: std::str::FromStr>(text: &str) -> Option<Vec<T>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::table::{BITS, CHROMA, CROPS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, LOOKS};
+    use super::super::words::{BITS, CHROMA, CROPS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, LOOKS};
     use super::super::{Key, Settings};
     use super::*;
     use darkroot_encode::Format;

@@ -79,7 +79,6 @@ pub(super) fn denoise(
         plane.resize(size.0 * size.1, 0.0);
         left.resize(size.0 * size.1 / 4, 0.0);
     }
-    let unit = UnitNoise::new();
     if rings.row.len() != size.0 {
         *rings = Rings::new(size.0);
     }
@@ -89,8 +88,8 @@ pub(super) fn denoise(
             forth(filter, mosaic, planes, size);
             for (k, (plane, left)) in planes.iter_mut().zip(left.iter_mut()).enumerate() {
                 let strength = filter.strengths[k];
-                let thresholds = [0, 1].map(|j| threshold(unit.variances[j], strength));
-                rings.clean((plane, left), size, &unit, thresholds, (coarse, k, corner));
+                let thresholds = [0, 1].map(|j| threshold(filter.unit.variances[j], strength));
+                rings.clean((plane, left), size, &filter.unit, thresholds, (coarse, k, corner));
             }
             back(filter, (planes, left), mosaic, size);
         },

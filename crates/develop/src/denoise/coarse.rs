@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::Denoiser;
 use super::pyramid;
 use super::rows::{Places, Source, between, hat};
-use super::shrink::{FINE, SCALES, UnitNoise, threshold};
+use super::shrink::{FINE, SCALES, threshold};
 use crate::light::LinearLight;
 use crate::view::{Cancel, Cancelled};
 
@@ -49,10 +49,9 @@ impl Coarse {
             strip(filter, source, i * ROWS, columns, [a, b, c, d]);
             Ok(())
         })?;
-        let unit = UnitNoise::new();
         planes.par_iter_mut().zip(filter.strengths).for_each(|(plane, strength)| {
             let thresholds: Vec<f32> =
-                unit.variances[FINE..SCALES].iter().map(|&v| threshold(v, strength)).collect();
+                filter.unit.variances[FINE..SCALES].iter().map(|&v| threshold(v, strength)).collect();
             pyramid::noise(plane, columns, &thresholds);
         });
         Ok(Self { columns, rows, planes })

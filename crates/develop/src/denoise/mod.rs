@@ -45,6 +45,7 @@ use crate::stage::{Stage, WhenSmaller};
 use crate::view::{Cancel, Cancelled};
 use rotation::Rotation;
 use rows::Source;
+use shrink::UnitNoise;
 use stabilise::Stabiliser;
 
 /// What it asks of a tile: pixels around it, of which it gives none.
@@ -84,6 +85,7 @@ pub(crate) struct Denoiser {
     stabilisers: [Stabiliser; 4],
     limits: [f32; 4],
     rotation: Rotation,
+    unit: UnitNoise,
     /// How strongly each of the four rotated planes is shrunk.
     strengths: [f32; 4],
     /// The noise of the coarse scales, once somebody has looked for it.
@@ -118,6 +120,7 @@ impl Denoiser {
             stabilisers,
             limits: channels.map(|c| asked.limits[c]),
             rotation: Rotation::with_grey(grey, channels),
+            unit: UnitNoise::new(),
             strengths: [luma, chroma, chroma, chroma],
             coarse: Mutex::new(None),
             asked,

@@ -18,8 +18,7 @@ pub(super) struct Source<'a> {
 impl Source<'_> {
     /// Mended light of row `y` of the frame from column `x` on, inside the active area.
     fn levelled(&self, x: usize, y: usize, out: &mut [f32]) {
-        self.light.levelled(&self.capture.counts, x, y, out);
-        self.mends.row(x, y, out);
+        self.mends.levelled(self.capture, self.light, (x, y), out);
     }
 
     /// The light of row `y` from column `x` on, both counted from the active area's corner; beyond it the area goes on as a

@@ -29,6 +29,7 @@ pub(super) fn removed(threshold: f32, power: f32) -> f32 {
 }
 
 /// What white noise of variance 1 becomes.
+#[derive(Debug)]
 pub(super) struct UnitNoise {
     /// Variance of the details of each scale.
     pub(super) variances: [f32; SCALES],

@@ -163,6 +163,16 @@ fn twice_the_light_with_its_noise_is_twice_the_result() {
     }
 }
 
+/// That a measured model tells the noise that was added, at some lights.
+fn assert_is_line(model: &NoiseModel, lights: [f32; 3]) {
+    for line in model.channels {
+        for light in lights {
+            let ratio = line.at(light) / LINE.at(light);
+            assert!((ratio - 1.0).abs() < 0.25, "{light}: {ratio}");
+        }
+    }
+}
+
 #[test]
 fn the_noise_that_was_added_is_measured() {
     let size = Size { width: 1024, height: 768 };
@@ -173,12 +183,7 @@ fn the_noise_that_was_added_is_measured() {
     };
     let capture = capture("RGGB", size, 23, ramp);
     let measured = super::measured(&capture, &LinearLight::of(&capture), [1.0; 3]).unwrap();
-    for line in measured.model.channels {
-        for light in [0.01, 0.1, 0.6] {
-            let ratio = line.at(light) / LINE.at(light);
-            assert!((ratio - 1.0).abs() < 0.25, "{light}: {ratio}");
-        }
-    }
+    assert_is_line(&measured.model, [0.01, 0.1, 0.6]);
 }
 
 #[test]
@@ -220,12 +225,7 @@ fn the_noise_under_x_trans_is_measured() {
     let ramp = |x: usize, _: usize| 0.7 * x as f32 / 900.0;
     let capture = capture(X_TRANS, Size { width: 900, height: 600 }, 29, ramp);
     let measured = super::measured(&capture, &LinearLight::of(&capture), [1.0; 3]).unwrap();
-    for line in measured.model.channels {
-        for light in [0.02, 0.1, 0.6] {
-            let ratio = line.at(light) / LINE.at(light);
-            assert!((ratio - 1.0).abs() < 0.25, "{light}: {ratio}");
-        }
-    }
+    assert_is_line(&measured.model, [0.02, 0.1, 0.6]);
 }
 
 #[test]

@@ -29,19 +29,20 @@ impl Mends {
         measured: &Measured,
     ) -> Self {
         let Some(cfa) = bayer(capture) else { return Self::default() };
+        let of_area = cfa.shifted(capture.active_area.x % 2, capture.active_area.y % 2);
+        let pixels = hot_pixels::found(capture, light, model, &of_area);
+        Self { pixels, ..Self::of_greens(capture, measured) }
+    }
+
+    /// Looks at the greens only.
+    pub(crate) fn of_greens(capture: &Capture, measured: &Measured) -> Self {
+        let Some(cfa) = bayer(capture) else { return Self::default() };
         let area = capture.active_area;
-        let of_area = cfa.shifted(area.x % 2, area.y % 2);
-        let greens = greens::factors(measured, &of_area).map(|factors| {
+        let greens = greens::factors(measured, &cfa.shifted(area.x % 2, area.y % 2)).map(|factors| {
             let green_column = |row: usize| usize::from(cfa.at(0, row).plane() != Some(1));
             [0, 1].map(|row| (green_column(row), factors[(row + area.y) % 2]))
         });
-        let pixels = hot_pixels::found(capture, light, model, &of_area);
-        Self { pixels, width: capture.counts.size().width, greens }
-    }
-
-    /// The same with all pixels as they are.
-    pub(crate) fn without_pixels(&self) -> Self {
-        Self { pixels: Vec::new(), ..*self }
+        Self { pixels: Vec::new(), width: capture.counts.size().width, greens }
     }
 
     /// In words.
@@ -68,8 +69,20 @@ impl Mends {
         self.greens.map(|[(_, even), (_, odd)]| even / odd)
     }
 
+    /// Levelled light of row `y` of the frame from column `x` on, put right.
+    pub(crate) fn levelled(
+        &self,
+        capture: &Capture,
+        linear: &LinearLight,
+        (x, y): (usize, usize),
+        light: &mut [f32],
+    ) {
+        linear.levelled(&capture.counts, x, y, light);
+        self.row(x, y, light);
+    }
+
     /// Puts levelled light of row `y` of the frame right, which begins at column `x`.
-    pub(crate) fn row(&self, x: usize, y: usize, light: &mut [f32]) {
+    fn row(&self, x: usize, y: usize, light: &mut [f32]) {
         if let Some(greens) = self.greens {
             let (column, factor) = greens[y % 2];
             for v in light.iter_mut().skip((column + x) % 2).step_by(2) {
