@@ -175,6 +175,7 @@ fn words(i: &Inspection) -> String {
         let [r, g, b] = i.saturation.map(|s| format!("{:.1} %", s * 100.0));
         line("clips at", format!("red {r}, green {g}, blue {b} of the white level"));
     }
+    line("blur", i.blur.map(|blur| format!("{blur:.2} pixels where it is sharpest")).unwrap_or_default());
     let [r, g, b] = i.clipped.map(|share| format!("{:.3} %", share * 100.0));
     line("clipped", format!("red {r}, green {g}, blue {b}"));
     if let (Some(hash), Some(mean)) = (&i.samples_hash, i.samples_mean) {

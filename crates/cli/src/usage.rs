@@ -10,13 +10,14 @@ use crate::Cli;
 
 /// What people look for under another name, and where it is here. The second is an option that must be there for the
 /// words to be true; empty where there is none.
-const INSTEAD: [(&[&str], &str, &str); 8] = [
+const INSTEAD: [(&[&str], &str, &str); 9] = [
     (
         &["resize", "size", "width", "height", "scale"],
         "",
         "pictures keep their full size; no option changes it",
     ),
-    (&["sharpen", "sharpening", "denoise"], "", "there is no such stage, and no option for it"),
+    (&["sharpness", "sharpening"], "sharpen", "`--sharpen` takes auto, off, or a number from 0 to 2"),
+    (&["noise", "noise-reduction", "nr"], "denoise", "`--denoise` takes auto, off, or a number from 0 to 2"),
     (&["out", "outdir", "out-dir", "output-dir", "dest"], "output", "`-o` says where pictures go"),
     (&["input", "in", "file"], "output", "files are named without an option"),
     (&["force", "replace", "yes"], "overwrite", "`--overwrite` replaces what is there"),

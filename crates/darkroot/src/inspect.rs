@@ -63,6 +63,8 @@ pub struct Inspection {
     pub shot: Shot,
     /// Share of the white level at which red, green and blue clip in this picture (1 when nothing else shows).
     pub saturation: [f32; 3],
+    /// How blurred the picture is where it is sharpest, pixels (standard deviation); none where too few edges tell.
+    pub blur: Option<f32>,
     /// Share of clipped samples of red, green and blue, 0..=1.
     pub clipped: [f64; 3],
     /// Number of samples by square root of light, 64 bins, for red, green and blue.
@@ -161,6 +163,7 @@ pub fn inspect(
         profile: store.find(&capture.camera).map(|f| format!("{} ({})", f.profile.camera().name(), f.place)),
         shot: shot(&capture.metadata),
         saturation,
+        blur: analysis.blur(),
         clipped,
         histogram: bins.iter().map(|h| h.to_vec()).collect(),
         samples_hash: hash,

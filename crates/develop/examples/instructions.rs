@@ -10,9 +10,10 @@ use darkroot_colour::{RgbSpace, TransferCurve};
 use darkroot_develop::demosaic::Method;
 use darkroot_develop::gamut::Primaries;
 use darkroot_develop::level::Levels;
+use darkroot_develop::sharpen::Sharpener;
 use darkroot_develop::tone::Curve;
 use darkroot_develop::transfer::Encoder;
-use darkroot_develop::{Demosaic, Look, balance, correct, demosaic, gamut, tone, transfer};
+use darkroot_develop::{Demosaic, Look, balance, correct, demosaic, gamut, sharpen, tone, transfer};
 use darkroot_photo::{Counts, Display, Rgb, Scene, Toned};
 use darkroot_profile::Order;
 
@@ -45,6 +46,12 @@ fn interpolation(array: &str) -> Option<Ready> {
     Some(Box::new(move || demosaic::demosaic(black_box(&mosaic), method, BORDER, &mut picture)))
 }
 
+fn sharpening() -> Ready {
+    let (wide, sharpener) = (planes(), Sharpener::of(0.6, 1.0, None, [1.0; 3]));
+    let (mut scratch, mut picture) = (sharpen::Scratch::default(), Rgb::black(SIZE));
+    Box::new(move || sharpen::sharpen(black_box(&wide), &sharpener, &mut scratch, &mut picture))
+}
+
 fn correction(order: Order) -> Ready {
     let model = model(order);
     // Its results become its input: no value costs more than another.
@@ -69,14 +76,23 @@ fn to_8_bits() -> Option<Ready> {
     Some(Box::new(move || transfer::encode(display.planes(), &encoder, black_box(&mut samples))))
 }
 
-const STAGES: [&str; 7] =
-    ["level and balance", "Bayer", "X-Trans", "order 2", "order 4", "tone and gamut", "transfer to 8 bits"];
+const STAGES: [&str; 8] = [
+    "level and balance",
+    "Bayer",
+    "X-Trans",
+    "sharpen",
+    "order 2",
+    "order 4",
+    "tone and gamut",
+    "transfer to 8 bits",
+];
 
 fn ready(stage: &str) -> Option<Ready> {
     match stage {
         "level and balance" => level_and_balance(),
         "Bayer" => interpolation("RGGB"),
         "X-Trans" => interpolation(X_TRANS),
+        "sharpen" => Some(sharpening()),
         "order 2" => Some(correction(Order::Two)),
         "order 4" => Some(correction(Order::Four)),
         "tone and gamut" => tone_and_gamut(),

@@ -10,6 +10,7 @@ use crate::denoise::{self, Asked, Denoiser, Measured, NoiseModel};
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::{self, Window};
+use crate::sharpen::blur;
 use crate::survey::{self, Survey};
 use crate::white::CameraMatrix;
 use crate::whites::Whites;
@@ -26,6 +27,7 @@ pub struct Analysis {
     /// Without hot and dead pixels, and with them.
     mends: [OnceLock<Arc<Mends>>; 2],
     denoiser: Mutex<Option<Arc<Denoiser>>>,
+    blur: OnceLock<Option<f32>>,
     colours: OnceLock<Option<Seen>>,
     /// For the multipliers that were asked for last: a person who drags another setting keeps them.
     clipped: Mutex<Option<([f32; 3], Arc<ClippedColours>)>>,
@@ -43,6 +45,7 @@ impl Analysis {
             samples_noise: OnceLock::new(),
             mends: [OnceLock::new(), OnceLock::new()],
             denoiser: Mutex::new(None),
+            blur: OnceLock::new(),
             colours: OnceLock::new(),
             clipped: Mutex::new(None),
         }
@@ -124,6 +127,15 @@ impl Analysis {
         let filter = Arc::new(Denoiser::of(&self.capture, asked)?);
         *last = Some(Arc::clone(&filter));
         Some(filter)
+    }
+
+    /// How blurred the picture is where it is sharpest: the standard deviation of a Gaussian, in pixels. `None` where too few
+    /// edges tell.
+    pub fn blur(&self) -> Option<f32> {
+        let noise = self.noise_model();
+        let measured =
+            || blur::measured(&self.capture, &self.light, self.survey().saturation[1], noise.as_ref());
+        *self.blur.get_or_init(measured)
     }
 
     /// Colours where the frame is not clipped, balanced, continued into where it is.

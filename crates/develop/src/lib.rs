@@ -3,7 +3,7 @@
 //! ```text
 //! plan    looks at the whole capture once: white, highlights, exposure
 //! render  cuts the picture into tiles and runs the stages over each, in parallel:
-//!         level -> denoise -> corrections -> balance -> highlights -> demosaic -> corrections
+//!         level -> denoise -> corrections -> balance -> highlights -> demosaic -> sharpen -> corrections
 //!         -> correct (profile) -> exposure -> tone -> gamut -> transfer
 //! ```
 //!
@@ -76,5 +76,6 @@ pub mod gamut;
 pub mod highlights;
 pub mod level;
 mod mend;
+pub mod sharpen;
 pub mod tone;
 pub mod transfer;

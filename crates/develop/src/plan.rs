@@ -1,5 +1,6 @@
 //! What the loops use: everything computed once for one capture, one profile and one recipe.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use darkroot_colour::temperature::Temperature;
@@ -18,6 +19,7 @@ use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::Noise;
 use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
+use crate::sharpen::Sharpener;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
 use crate::view::Scale;
@@ -63,6 +65,8 @@ pub struct Plan {
     pub(crate) mends: Arc<Mends>,
     /// What takes noise from the mosaic; `None` for nothing.
     pub(crate) denoiser: Option<Arc<Denoiser>>,
+    /// What sharpens the picture; `None` for nothing.
+    pub(crate) sharpener: Option<Sharpener>,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
@@ -140,6 +144,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         },
         mends,
         denoiser,
+        sharpener: sharpener(analysis, recipe.sharpen, measuring, multipliers),
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
             _ if camera_output => Treatment::Keep,
@@ -183,6 +188,26 @@ fn denoiser(
     let model = analysis.noise_model()?;
     let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
     analysis.denoiser(Asked { model, multipliers, strength, limits, mends: Arc::clone(mends) })
+}
+
+/// Blurs that are undone, pixels: below the first there is nothing to do; beyond the last a picture is not in focus.
+const BLURS: RangeInclusive<f32> = 0.3..=0.9;
+/// Blur of a picture that does not tell its own.
+const USUAL_BLUR: f32 = 0.4;
+
+/// What sharpens the picture: as much as is asked for, or as suits the look.
+fn sharpener(
+    analysis: &Analysis,
+    asked: Option<f32>,
+    measuring: bool,
+    multipliers: [f32; 3],
+) -> Option<Sharpener> {
+    let amount = asked.unwrap_or(if measuring { 0.0 } else { 1.0 });
+    if analysis.capture().rendered || amount <= 0.0 {
+        return None;
+    }
+    let blur = analysis.blur().unwrap_or(USUAL_BLUR).min(*BLURS.end());
+    (blur >= *BLURS.start()).then(|| Sharpener::of(blur, amount, analysis.noise_model(), multipliers))
 }
 
 /// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another

@@ -15,6 +15,9 @@ pub struct Recipe {
     pub denoise: Denoise,
     /// How missing colours are interpolated.
     pub demosaic: Demosaic,
+    /// How much of the sharpness that the camera took is given back: 0 nothing, 1 as much as was measured; `None` for what
+    /// suits the look: 1, in the linear look and in camera RGB 0.
+    pub sharpen: Option<f32>,
     /// Brightness.
     pub exposure: Exposure,
     /// Rendering from scene to display.

@@ -13,6 +13,7 @@ use crate::highlights::{self, Treatment};
 use crate::in_turn::in_turn;
 use crate::plan::Plan;
 use crate::recipe::{Bits, OutputSpace};
+use crate::sharpen::{self, Sharpener};
 use crate::stage::{Stage, tile_border};
 use crate::tile::{Levelled, covered, tile, tile_ends};
 use crate::transfer::Sample;
@@ -121,12 +122,16 @@ pub(crate) type TakeBand<'a, T> = dyn Fn(usize, &[T]) -> Result<(), Cancelled> +
 pub struct Render<'a> {
     plan: &'a Plan,
     grid: Grid,
+    /// Pixels around a tile that the mosaic has more than the picture that is made from it, and that that has more than
+    /// the tile.
     border: usize,
+    wider: usize,
     reduction: Option<Reduction>,
     rect: Rect,
     columns: usize,
     /// What takes away noise, with that of the coarse scales.
     denoiser: Option<(&'a Denoiser, Arc<Coarse>)>,
+    sharpener: Option<&'a Sharpener>,
     cancel: &'a Cancel,
 }
 
@@ -137,6 +142,9 @@ struct Scratch<T> {
     /// Where each sample of the mosaic clips, when the file's corrections make that differ.
     ends: Mosaic<f32>,
     camera: Rgb<CameraSpace>,
+    /// The same before it is sharpened, and more of it.
+    wide: Rgb<CameraSpace>,
+    sharpened: sharpen::Scratch,
     finish: Finish<T>,
 }
 
@@ -147,14 +155,18 @@ impl<'a> Render<'a> {
         let layout = plan.capture.counts.layout();
         let coarse =
             |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&plan.capture, &plan.light, cancel)?));
+        let reduction = (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout));
+        let sharpener = plan.sharpener.as_ref().filter(|_| reduction.is_none());
         Ok(Self {
             plan,
             grid: Grid::of(plan, view.scale),
             border: tile_border(plan.changes(), &plan.readers(view.scale)),
-            reduction: (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout)),
+            wider: sharpener.map_or(0, |_| sharpen::STAGE.border),
+            reduction,
             rect,
             columns: columns.clamp(1, rect.width.max(1)),
             denoiser: plan.denoiser.as_ref().map(coarse).transpose()?,
+            sharpener,
             cancel,
         })
     }
@@ -167,6 +179,8 @@ impl<'a> Render<'a> {
             mosaic: Mosaic { size: nothing, layout: layout.clone(), samples: Vec::new() },
             ends: Mosaic { size: nothing, layout, samples: Vec::new() },
             camera: Rgb::black(nothing),
+            wide: Rgb::black(nothing),
+            sharpened: sharpen::Scratch::default(),
             finish: Finish::new(),
         }
     }
@@ -213,10 +227,11 @@ impl<'a> Render<'a> {
     /// The pipeline down to camera RGB, for one rectangle of the grid.
     fn neighbourhood_stages<T>(&self, rect: Rect, scratch: &mut Scratch<T>) {
         let (plan, border, bin) = (self.plan, self.border, self.grid.bin);
-        let Scratch { denoised, mosaic, ends, camera, .. } = scratch;
+        let Scratch { denoised, mosaic, ends, camera, wide, sharpened, .. } = scratch;
         let (x, y) = self.grid.corner(rect);
-        let size = Size { width: rect.width * bin + 2 * border, height: rect.height * bin + 2 * border };
-        let begin = (x - border as isize, y - border as isize);
+        let around = border + self.wider;
+        let size = Size { width: rect.width * bin + 2 * around, height: rect.height * bin + 2 * around };
+        let begin = (x - around as isize, y - around as isize);
         let (capture, light) = (&*plan.capture, &*plan.light);
         let levelled: &Levelled<'_> = match &self.denoiser {
             None => &|x, y, row| plan.mends.levelled(capture, light, (x, y), row),
@@ -231,9 +246,13 @@ impl<'a> Render<'a> {
         match &self.reduction {
             Some(reduction) => reduction.reduce(mosaic, border, bin, begin, camera),
             None => {
-                demosaic::demosaic(mosaic, plan.demosaic, border, camera);
-                debias::debias(mosaic, border, &plan.noise, camera);
-                fringe::cut(mosaic, border, &plan.highlights, camera);
+                let interpolated = if self.sharpener.is_some() { &mut *wide } else { &mut *camera };
+                demosaic::demosaic(mosaic, plan.demosaic, border, interpolated);
+                debias::debias(mosaic, border, &plan.noise, interpolated);
+                fringe::cut(mosaic, border, &plan.highlights, interpolated);
+                if let Some(sharpener) = self.sharpener {
+                    sharpen::sharpen(wide, sharpener, sharpened, camera);
+                }
                 if bin > 1 {
                     *camera = reduce::mean(camera, bin);
                 }

@@ -189,9 +189,9 @@ fn a_tiny_reflex_has_no_rim_of_a_colour_that_is_not_there() {
                 let most = inner().fold(0.0, f64::max);
                 let mean = inner().map(|e| e.max(0.0)).sum::<f64>() / truth.len() as f64;
                 let what = format!("{name}, edge {edge}, level {level}: at most {most}, in the mean {mean}");
-                // Measured: 30 and 0.35 under Bayer, 34 and 0.48 under X-Trans. Spots that are as bright on a
+                // Measured: 30 and 0.35 under Bayer, 34 and 0.55 under X-Trans (0.48 unsharpened). Spots that are as bright on a
                 // sensor without an end have up to 39 and 0.35, and 63 and 0.92.
-                let (bound, mean_bound) = if *name == "X-Trans" { (36.0, 0.50) } else { (31.5, 0.37) };
+                let (bound, mean_bound) = if *name == "X-Trans" { (36.0, 0.57) } else { (31.5, 0.37) };
                 assert!(most < bound && mean < mean_bound, "{what}");
             }
         }

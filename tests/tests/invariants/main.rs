@@ -14,6 +14,7 @@ mod highlights;
 mod hostile;
 mod numbers;
 mod ramps;
+mod sharpen;
 mod tiles;
 mod truth;
 mod views;

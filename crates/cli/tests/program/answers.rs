@@ -24,7 +24,7 @@ fn guesses_are_near_and_what_we_know_is_said() {
     let desk = Desk::with_dng();
     for (option, right, wrong) in [
         ("--resize", "full size", "--recipe"),
-        ("--sharpen", "no such stage", "--space"),
+        ("--sharpening", "`--sharpen` takes", "--space"),
         ("--outdir", "`-o` says", "-- --outdir"),
         ("--force", "`--overwrite`", "-- --force"),
         ("--expsoure", "--exposure", "-- --expsoure"),

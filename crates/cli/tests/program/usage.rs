@@ -11,7 +11,7 @@ fn wrong_usage_is_exit_code_2_and_says_what_is_right() {
         (&["develop"], "FILE"),
         (&["inspect"], "FILE"),
         (&["enlarge"], "enlarge"),
-        (&["develop", "a.dng", "--sharpen"], "--sharpen"),
+        (&["develop", "a.dng", "--clarity"], "--clarity"),
         (&["develop", "a.dng", "--wb", "warm"], "5200K"),
         (&["develop", "a.dng", "--wb", "1,2"], "2.1,1,1.5"),
         (&["develop", "a.dng", "--exposure", "bright"], "stops"),

@@ -215,6 +215,7 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
         ("highlights", recipe.highlights == fixed.highlights),
         ("hot-pixels", recipe.hot_pixels == fixed.hot_pixels),
         ("denoise", recipe.denoise == fixed.denoise),
+        ("sharpen", recipe.sharpen == fixed.sharpen),
         ("demosaic", recipe.demosaic == fixed.demosaic),
         ("crop", recipe.crop == fixed.crop),
     ];

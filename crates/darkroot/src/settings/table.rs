@@ -4,7 +4,7 @@
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
 use super::setting::{Changes, Group, Kind, Setting};
-use super::text::{NotAValue, balance, denoise, light, number, one_of, profile, space};
+use super::text::{NotAValue, amount, balance, light, number, one_of, profile, space};
 use super::words::{
     AUTO, BITS, CHROMA, CROPS, DECODERS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH,
     plain,
@@ -17,7 +17,7 @@ fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 21] = [
+pub const SETTINGS: [Setting; 22] = [
     Setting {
         name: "format",
         alias: None,
@@ -171,7 +171,7 @@ pub const SETTINGS: [Setting; 21] = [
         help: "Noise taken away before interpolation: auto (all that was measured; none in the linear look and in camera \
                RGB), off, or so many times that, 0 to 2",
         changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.amount, denoise(text)),
+        set: |to, text| put(&mut to.recipe.denoise.amount, amount(text, "amount of denoising")),
     },
     Setting {
         name: "denoise-luma",
@@ -196,6 +196,19 @@ pub const SETTINGS: [Setting; 21] = [
         help: "Share of it for noise of colour, 0 to 2",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.denoise.chroma, number(text).map(|n| n as f32)),
+    },
+    Setting {
+        name: "sharpen",
+        alias: None,
+        noun: "amount of sharpening",
+        kind: Kind::Text { form: "auto, off, or a number from 0 to 2", example: "\"off\" or \"0.5\"" },
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "AMOUNT",
+        help: "Sharpness that lens and sensor took, given back: auto (as much as the picture's edges show; none in the \
+               linear look and in camera RGB), off, or so many times that, 0 to 2",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.sharpen, amount(text, "amount of sharpening")),
     },
     Setting {
         name: "demosaic",

@@ -123,17 +123,17 @@ pub fn space(text: &str) -> Result<OutputSpace, NotAValue> {
     })
 }
 
-/// An amount of denoising: auto (`None`), off, or a number from 0 to 2.
+/// An amount of what `noun` says: auto (`None`), off, or a number from 0 to 2.
 ///
 /// # Errors
 /// It is none.
-pub fn denoise(text: &str) -> Result<Option<f32>, NotAValue> {
+pub fn amount(text: &str, noun: &'static str) -> Result<Option<f32>, NotAValue> {
     match text {
         AUTO => Ok(None),
         "off" => Ok(Some(0.0)),
         _ => match number(text) {
             Ok(amount) if (0.0..=2.0).contains(&amount) => Ok(Some(amount as f32)),
-            _ => Err(NotAValue::plain(text, "amount of denoising", "auto, off, or a number from 0 to 2")),
+            _ => Err(NotAValue::plain(text, noun, "auto, off, or a number from 0 to 2")),
         },
     }
 }

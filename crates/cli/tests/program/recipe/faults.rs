@@ -8,7 +8,7 @@ fn what_is_wrong_in_a_file_is_named_with_its_line_before_anything_is_written() {
     desk.put("b.dng", small_dng());
     let wrong = [
         ("\n\nspcae = \"srgb\"", [":3:", "`spcae`", "did you mean `space`"]),
-        ("sharpen = 1", [":1:", "`sharpen`", "white-balance"]),
+        ("clarity = 1", [":1:", "`clarity`", "white-balance"]),
         ("look = \"film\"", [":1:", "`film`", "neutral, vivid, flat or linear"]),
         ("exposure = \"bright\"", [":1:", "`bright`", "-20 to 20"]),
         ("quality = 101", [":1:", "`101`", "1..=100"]),
