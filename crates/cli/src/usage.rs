@@ -10,12 +10,14 @@ use crate::Cli;
 
 /// What people look for under another name, and where it is here. The second is an option that must be there for the
 /// words to be true; empty where there is none.
-const INSTEAD: [(&[&str], &str, &str); 9] = [
+const INSTEAD: [(&[&str], &str, &str); 11] = [
     (
-        &["resize", "size", "width", "height", "scale"],
-        "",
-        "pictures keep their full size; no option changes it",
+        &["size", "width", "height", "scale", "long-edge"],
+        "resize",
+        "`--resize` takes long:2048, 1920x1080, 50% and more",
     ),
+    (&["angle", "horizon"], "straighten", "`--straighten` takes degrees"),
+    (&["aspect", "ratio"], "crop", "`--crop` takes 3:2, 80% or X,Y,WIDTH,HEIGHT"),
     (&["sharpness", "sharpening"], "sharpen", "`--sharpen` takes auto, off, or a number from 0 to 2"),
     (&["noise", "noise-reduction", "nr"], "denoise", "`--denoise` takes auto, off, or a number from 0 to 2"),
     (&["out", "outdir", "out-dir", "output-dir", "dest"], "output", "`-o` says where pictures go"),

@@ -47,6 +47,47 @@ pub enum Error {
         /// Size of the picture.
         size: Size,
     },
+    /// A frame that cannot be.
+    #[error("{fault}; the picture has {width} x {height} pixels", width = size.width, height = size.height)]
+    Geometry {
+        /// What is wrong.
+        fault: GeometryFault,
+        /// Size of the picture before it is straightened and cut.
+        size: Size,
+    },
+}
+
+/// What is wrong with how a picture shall lie in the frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GeometryFault {
+    /// Not between -45 and 45 degrees.
+    Angle,
+    /// Not the corners of a convex quadrangle, clockwise from the top left.
+    Corners,
+    /// Not inside the picture.
+    Crop,
+    /// A corner shows what the picture has not.
+    CropCorner,
+    /// Nothing of the picture is left.
+    Nothing,
+    /// No pixel, or more than there can be.
+    Size,
+}
+
+impl fmt::Display for GeometryFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Angle => "cannot be straightened by more than 45 degrees",
+            Self::Corners => {
+                "cannot be put into perspective: its four corners must be those of a convex quadrangle, from the top left \
+                 one clockwise"
+            }
+            Self::Crop => "cannot be cropped to that: it is not inside of the picture",
+            Self::CropCorner => "cannot be cropped to that: a corner lies outside of the straightened picture",
+            Self::Nothing => "cannot be straightened and cropped like that: nothing is left",
+            Self::Size => "cannot be made that large: sides have 1 to 65500 pixels",
+        })
+    }
 }
 
 /// What is wrong with a grey spot.

@@ -19,7 +19,7 @@ pub(crate) struct Grid {
 
 impl Grid {
     pub(crate) fn of(plan: &Plan, scale: Scale) -> Self {
-        let (crop, orientation, bin) = (plan.crop, plan.orientation, scale.bin());
+        let (crop, orientation, bin) = (plan.laid.crop, plan.laid.orientation, scale.bin());
         let size = scale.of(crop.size());
         let upright = orientation.applied_to(size);
         // Which corner of the grid becomes the upright picture's top left one.
@@ -33,6 +33,12 @@ impl Grid {
         let origin =
             (begin(x, crop.x, crop.right(), size.width), begin(y, crop.y, crop.bottom(), size.height));
         Self { bin, origin, size, orientation }
+    }
+
+    /// The pixels of an area of the frame, from its corner on.
+    pub(crate) fn of_area(area: Rect, scale: Scale) -> Self {
+        let origin = (area.x as isize, area.y as isize);
+        Self { bin: scale.bin(), origin, size: scale.of(area.size()), orientation: Orientation::Upright }
     }
 
     /// The pixels that become a rectangle of the upright picture.

@@ -18,12 +18,12 @@
 
 pub mod recipe;
 pub use recipe::{
-    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Highlights, HotPixels, Look, Output, OutputSpace,
-    Recipe,
+    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Geometry, Highlights, HotPixels, Lens, Look,
+    Output, OutputSpace, Recipe, Resize, Turn,
 };
 
 pub mod error;
-pub use error::{Error, SpotFault};
+pub use error::{Error, GeometryFault, SpotFault};
 
 pub mod light;
 pub use light::LinearLight;
@@ -73,6 +73,7 @@ pub mod denoise;
 pub mod exposure;
 pub mod fringe;
 pub mod gamut;
+mod geometry;
 pub mod highlights;
 pub mod level;
 mod mend;

@@ -6,6 +6,7 @@ use darkroot_photo::{AsShot, Layout, Rect};
 
 use crate::analysis::Analysis;
 use crate::error::{Error, SpotFault};
+use crate::geometry::Laid;
 use crate::recipe::Balance;
 use crate::survey;
 use crate::whites::Whites;
@@ -22,7 +23,7 @@ pub(crate) fn neutral(
     analysis: &Analysis,
     whites: &Whites<'_>,
     balance: Balance,
-    crop: Rect,
+    laid: &Laid,
     notes: &mut Vec<String>,
 ) -> Result<[f64; 3], Error> {
     let capture = analysis.capture();
@@ -55,7 +56,7 @@ pub(crate) fn neutral(
             }
             of_white(Temperature::from_kelvin_tint(kelvin, tint).xy())
         }
-        Balance::Spot { x, y, side } => spot(analysis, crop, (x, y), side),
+        Balance::Spot { x, y, side } => spot(analysis, laid, (x, y), side),
         Balance::Multipliers(m) => {
             let (low, high) =
                 (m.iter().copied().fold(f64::MAX, f64::min), m.iter().copied().fold(0.0, f64::max));
@@ -66,22 +67,22 @@ pub(crate) fn neutral(
 }
 
 /// Neutral of a grey spot, given in pixels of the developed picture.
-fn spot(analysis: &Analysis, crop: Rect, (x, y): (usize, usize), side: usize) -> Result<[f64; 3], Error> {
+fn spot(analysis: &Analysis, laid: &Laid, (x, y): (usize, usize), side: usize) -> Result<[f64; 3], Error> {
     let capture = analysis.capture();
-    let upright = capture.orientation.applied_to(crop.size());
+    let upright = laid.size;
     let wrong = |fault| Error::Spot { x, y, fault, size: upright };
     if x >= upright.width || y >= upright.height {
         return Err(wrong(SpotFault::Outside));
     }
-    let (u, v) = capture.orientation.inverse().place(x, y, upright);
+    let (column, row) = laid.in_frame(capture, x, y);
     let side = side.clamp(SPOT_SIDES.0, SPOT_SIDES.1);
     let around = Rect {
-        x: (crop.x + u).saturating_sub(side / 2),
-        y: (crop.y + v).saturating_sub(side / 2),
+        x: column.saturating_sub(side / 2),
+        y: row.saturating_sub(side / 2),
         width: side,
         height: side,
     };
-    let around = around.intersection(crop).ok_or_else(|| wrong(SpotFault::Outside))?;
+    let around = around.intersection(laid.crop).ok_or_else(|| wrong(SpotFault::Outside))?;
     if around.width < SPOT_SIDES.0 || around.height < SPOT_SIDES.0 {
         return Err(wrong(SpotFault::TooSmall));
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{RgbSpace, TransferCurve, Xy, white};
-use darkroot_photo::{AsShot, Capture, Correction, Layout, Orientation, Rect, Size};
+use darkroot_photo::{AsShot, Capture, Correction, Layout, Size};
 use darkroot_profile::{Model, PlaneModel, Profile};
 
 use crate::analysis::Analysis;
@@ -14,11 +14,12 @@ use crate::demosaic::Method;
 use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
 use crate::gamut::Primaries;
+use crate::geometry::{Laid, lay};
 use crate::highlights::{CLIPPED, Rebuild, Treatment};
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
+use crate::recipe::{Bits, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
 use crate::sharpen::Sharpener;
 use crate::tone::Curve;
 use crate::transfer::Encoder;
@@ -56,8 +57,8 @@ pub struct Plan {
     pub notes: Vec<String>,
     pub(crate) capture: Arc<Capture>,
     pub(crate) light: Arc<LinearLight>,
-    pub(crate) crop: Rect,
-    pub(crate) orientation: Orientation,
+    /// Where the picture lies in the frame.
+    pub(crate) laid: Laid,
     pub(crate) picture_corrections: Vec<Correction>,
     pub(crate) highlights: Treatment,
     pub(crate) noise: Noise,
@@ -84,7 +85,7 @@ impl Plan {
 
     /// Size of the developed picture at a scale, upright.
     pub fn size_at(&self, scale: Scale) -> Size {
-        scale.of(self.orientation.applied_to(self.crop.size()))
+        scale.of(self.laid.size)
     }
 }
 
@@ -98,32 +99,26 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let layout = capture.counts.layout();
     let demosaic =
         Method::of(layout, recipe.demosaic).ok_or_else(|| Error::Filters { filters: filters(layout) })?;
-    let crop = match recipe.crop {
-        Crop::Default => capture.default_crop,
-        Crop::Active => capture.active_area,
-    };
+    let camera_output = recipe.output.space == OutputSpace::Camera;
+    // What the camera rendered for display has its look already.
+    let curve = Curve::of(recipe.look).filter(|_| !capture.rendered);
+    let measuring = curve.is_none() || camera_output;
+    let laid = lay(capture, recipe.crop, &recipe.geometry, measuring)?;
     let mut notes = Vec::new();
     let whites = whites(analysis, profile);
-    let neutral = neutral::neutral(analysis, &whites, recipe.balance, crop, &mut notes)?;
+    let neutral = neutral::neutral(analysis, &whites, recipe.balance, &laid, &mut notes)?;
     let multipliers = neutral::multipliers(neutral);
     let white = whites.white_of(neutral);
     let (colours, model) = colours(analysis, profile, neutral, white, &mut notes);
-    // What the camera rendered for display has its look already.
-    let curve = Curve::of(recipe.look).filter(|_| !capture.rendered);
     let (space, transfer) = match recipe.output.space {
         OutputSpace::Rgb(space) => (space, space.curve),
         OutputSpace::Camera => (RgbSpace::REC2020, TransferCurve::Linear),
     };
-    let camera_output = recipe.output.space == OutputSpace::Camera;
-    let measuring = curve.is_none() || camera_output;
     let mends = mends(analysis, recipe.hot_pixels, measuring);
     notes.extend(mends.notes());
     let denoiser = denoiser(analysis, recipe.denoise, measuring, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
-    let all = || capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
-    for _ in all().filter(|c| !is_applied(c)) {
-        notes.push("the file's lens distortion correction (WarpRectilinear) is not applied".to_owned());
-    }
+    notes.extend(laid.lens_note(capture));
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
@@ -133,8 +128,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         notes,
         capture: Arc::clone(capture),
         light: Arc::clone(analysis.light()),
-        crop,
-        orientation: capture.orientation,
+        laid,
         noise: match demosaic {
             Method::Lmmse => {
                 let left = denoiser.as_ref().map_or(1.0, |filter| filter.left());

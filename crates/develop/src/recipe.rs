@@ -2,6 +2,8 @@
 
 use darkroot_colour::RgbSpace;
 
+pub use crate::geometry::{Crop, Flip, Geometry, Lens, Resize, Turn};
+
 /// How a photograph shall be developed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Recipe {
@@ -24,6 +26,8 @@ pub struct Recipe {
     pub look: Look,
     /// Which part of the frame.
     pub crop: Crop,
+    /// How that lies in the picture, and how large it gets.
+    pub geometry: Geometry,
     /// Space and sample type of the result.
     pub output: Output,
 }
@@ -129,16 +133,6 @@ pub enum Look {
     Flat,
     /// Strictly scene-linear: no automatic anything, not even the maker's baseline exposure.
     Linear,
-}
-
-/// Which part of the frame is developed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Crop {
-    /// What the maker shows.
-    #[default]
-    Default,
-    /// Everything that light falls on.
-    Active,
 }
 
 /// Space and sample type of the result.

@@ -8,6 +8,7 @@ use crate::demosaic::reduce::{self, Reduction};
 use crate::demosaic::{self, Method, debias};
 use crate::denoise::{self, Coarse, Denoiser};
 use crate::finish::Finish;
+use crate::geometry::{Warp, resample};
 use crate::grid::Grid;
 use crate::highlights::{self, Treatment};
 use crate::in_turn::in_turn;
@@ -21,9 +22,9 @@ use crate::view::{Cancel, Cancelled, Scale, View};
 use crate::{corrections, fringe};
 
 /// Rows of the sensor that one task looks at.
-const BAND_ROWS: usize = 96;
+const BAND_ROWS: usize = 192;
 /// Columns of a tile within a band.
-const TILE_COLUMNS: usize = 512;
+const TILE_COLUMNS: usize = 256;
 
 impl Plan {
     /// The whole picture at a scale.
@@ -122,6 +123,8 @@ pub(crate) type TakeBand<'a, T> = dyn Fn(usize, &[T]) -> Result<(), Cancelled> +
 pub struct Render<'a> {
     plan: &'a Plan,
     grid: Grid,
+    /// Where the picture's pixels come from, and the grid that those are, where that is not the frame's.
+    warp: Option<(&'a Warp, Grid)>,
     /// Pixels around a tile that the mosaic has more than the picture that is made from it, and that that has more than
     /// the tile.
     border: usize,
@@ -145,6 +148,8 @@ struct Scratch<T> {
     /// The same before it is sharpened, and more of it.
     wide: Rgb<CameraSpace>,
     sharpened: sharpen::Scratch,
+    /// The picture, where it is not made of the frame's pixels as they are.
+    warped: Rgb<CameraSpace>,
     finish: Finish<T>,
 }
 
@@ -156,10 +161,19 @@ impl<'a> Render<'a> {
         let coarse =
             |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&plan.capture, &plan.light, cancel)?));
         let reduction = (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout));
+        let columns = plan.laid.warp.as_ref().map_or(columns, |warp| warp.columns(columns));
         let sharpener = plan.sharpener.as_ref().filter(|_| reduction.is_none());
         Ok(Self {
             plan,
-            grid: Grid::of(plan, view.scale),
+            grid: match plan.laid.warp {
+                None => Grid::of(plan, view.scale),
+                Some(_) => Grid::of_area(plan.capture.active_area, view.scale),
+            },
+            warp: plan
+                .laid
+                .warp
+                .as_ref()
+                .map(|warp| (warp, Grid::of_area(Rect::full(plan.laid.size), view.scale))),
             border: tile_border(plan.changes(), &plan.readers(view.scale)),
             wider: sharpener.map_or(0, |_| sharpen::STAGE.border),
             reduction,
@@ -181,6 +195,7 @@ impl<'a> Render<'a> {
             camera: Rgb::black(nothing),
             wide: Rgb::black(nothing),
             sharpened: sharpen::Scratch::default(),
+            warped: Rgb::black(nothing),
             finish: Finish::new(),
         }
     }
@@ -217,9 +232,18 @@ impl<'a> Render<'a> {
                 return Err(Cancelled);
             }
             let width = self.columns.min(self.rect.width - x);
-            let rect = self.grid.of_upright(Rect { x: self.rect.x + x, width, ..band_rect });
-            self.neighbourhood_stages(rect, scratch);
-            scratch.finish.tile(self.plan, &self.grid, &scratch.camera, rect, (band_rect, band));
+            let upright = Rect { x: self.rect.x + x, width, ..band_rect };
+            if let Some((warp, grid)) = &self.warp {
+                let places = warp.places(upright, grid.bin);
+                let source = warp.needs(&places, grid.bin);
+                self.neighbourhood_stages(source, scratch);
+                resample(warp, (&scratch.camera, source), &places, upright, &mut scratch.warped);
+                scratch.finish.tile(self.plan, grid, &scratch.warped, upright, (band_rect, band));
+            } else {
+                let rect = self.grid.of_upright(upright);
+                self.neighbourhood_stages(rect, scratch);
+                scratch.finish.tile(self.plan, &self.grid, &scratch.camera, rect, (band_rect, band));
+            }
         }
         Ok(())
     }

@@ -27,7 +27,7 @@ const ICC_PROFILE: u16 = 0x8773;
 const LEVEL: u32 = 1;
 
 /// Rows of a band, and of each of the strips that it becomes.
-const BAND_ROWS: usize = 96;
+const BAND_ROWS: usize = 192;
 const STRIP_ROWS: usize = 16;
 
 /// Writes a picture of a size that [`Format::sides`] has allowed.

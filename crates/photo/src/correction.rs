@@ -36,7 +36,7 @@ pub enum Correction {
     ColumnScale(Area, Vec<f32>),
     /// Opcode 3, FixVignetteRadial.
     Vignette(Vignette),
-    /// Opcode 1, WarpRectilinear: lens distortion and lateral chromatic aberration.
+    /// Opcodes 1 and 2, WarpRectilinear and WarpFisheye: lens distortion and lateral chromatic aberration.
     Warp(Warp),
 }
 
@@ -66,10 +66,21 @@ pub struct Vignette {
     pub centre: (f64, f64),
 }
 
+/// How a lens draws straight lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Projection {
+    /// Straight, but for its distortion.
+    Rectilinear,
+    /// As a fisheye does.
+    Fisheye,
+}
+
 /// Where each point of the corrected picture comes from, by plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Warp {
-    /// kr0..kr3 (radial) and kt0, kt1 (tangential) for each plane; one set serves all planes.
+    /// What lens the coefficients are for.
+    pub projection: Projection,
+    /// kr0..kr3 (radial) and kt0, kt1 (tangential, 0 for a fisheye) for each plane; one set serves all planes.
     pub planes: Vec<[f64; 6]>,
     /// Centre as a fraction of width and height.
     pub centre: (f64, f64),

@@ -115,6 +115,20 @@ impl Orientation {
         if self.swaps_axes() { Size { width: size.height, height: size.width } } else { size }
     }
 
+    /// What turns a picture as this orientation does, and then as another.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        let size = Size { width: 2, height: 3 };
+        let both = |x: usize, y: usize| {
+            let (u, v) = self.place(x, y, size);
+            next.place(u, v, self.applied_to(size))
+        };
+        // Two neighbouring corners tell orientations apart.
+        let as_both =
+            |one: &Self| [(0, 0), (1, 0)].into_iter().all(|(x, y)| one.place(x, y, size) == both(x, y));
+        (1..=8).map(Self::from_exif).find(as_both).unwrap_or(self)
+    }
+
     /// The orientation that undoes this one.
     #[must_use]
     pub fn inverse(self) -> Self {

@@ -1,7 +1,7 @@
 //! DNG opcode lists 2 and 3 as corrections (DNG 1.7, chapter 7). Numbers in them are big-endian.
 
 use darkroot_photo::Rect;
-use darkroot_photo::correction::{Area, Correction, GainMap, Vignette, Warp};
+use darkroot_photo::correction::{Area, Correction, GainMap, Projection, Vignette, Warp};
 
 /// Flag bit: a reader that does not know the opcode may skip it.
 const OPTIONAL: u32 = 1;
@@ -41,8 +41,6 @@ pub(crate) fn parse(list: &[u8], name: &str, notes: &mut Vec<String>) -> Vec<Cor
 fn is_whole(id: u32, body: &mut Reader<'_>) -> Option<bool> {
     let length = body.0.len();
     Some(match id {
-        // Sets of coefficients, and the centre.
-        2 => length == 4 + 32 * body.u32()? as usize + 16,
         // A constant and the phase of the filters.
         4 => length == 8,
         // Phase, points and rectangles.
@@ -56,7 +54,7 @@ fn is_whole(id: u32, body: &mut Reader<'_>) -> Option<bool> {
             length == 16 && top < bottom && left < right
         }
         // Those that are applied where they are whole.
-        1 | 3 | 7..=13 => false,
+        1..=3 | 7..=13 => false,
         _ => true,
     })
 }
@@ -85,7 +83,15 @@ fn correction(id: u32, body: &mut Reader<'_>) -> Option<Correction> {
     Some(match id {
         1 => {
             let planes = (0..body.u32()?.min(4)).map(|_| body.f64s()).collect::<Option<Vec<[f64; 6]>>>()?;
-            Correction::Warp(Warp { planes, centre: (body.f64()?, body.f64()?) })
+            let projection = Projection::Rectilinear;
+            Correction::Warp(Warp { projection, planes, centre: (body.f64()?, body.f64()?) })
+        }
+        2 => {
+            let radial = |[a, b, c, d]: [f64; 4]| [a, b, c, d, 0.0, 0.0];
+            let planes =
+                (0..body.u32()?.min(4)).map(|_| body.f64s().map(radial)).collect::<Option<Vec<_>>>()?;
+            let projection = Projection::Fisheye;
+            Correction::Warp(Warp { projection, planes, centre: (body.f64()?, body.f64()?) })
         }
         3 => {
             Correction::Vignette(Vignette { coefficients: body.f64s()?, centre: (body.f64()?, body.f64()?) })
@@ -230,9 +236,7 @@ mod tests {
     #[test]
     fn every_opcode_is_read_and_one_that_is_not_applied_or_damaged_is_named() {
         let words = |numbers: &[u32]| numbers.iter().flat_map(|n| n.to_be_bytes()).collect::<Vec<u8>>();
-        let of_length = |count: u32, length: usize| [words(&[count]), vec![0; length - 4]].concat();
         for (id, whole, name) in [
-            (2, of_length(1, 52), "WarpFisheye"),
             (4, words(&[0, 1]), "FixBadPixelsConstant"),
             (5, words(&[0, 1, 1, 7, 7, 1, 1, 2, 2]), "FixBadPixelsList"),
             (6, words(&[0, 0, 9, 9]), "TrimBounds"),

@@ -1,8 +1,8 @@
 //! The corrections that a DNG carries, seen in finished pictures: on a flat field each pixel has a known value.
 
 use darkroot_colour::RgbSpace;
-use darkroot_develop::{Bits, Output, OutputSpace, Recipe};
-use darkroot_photo::correction::{Area, GainMap, Vignette, Warp};
+use darkroot_develop::{Bits, Geometry, Lens, Output, OutputSpace, Recipe};
+use darkroot_photo::correction::{Area, GainMap, Projection, Vignette, Warp};
 use darkroot_photo::{Capture, Correction, Layout, Rect, Size};
 use darkroot_simulate::camera::filters;
 use darkroot_tests::{flat_grey, layouts, measuring, output, pixels};
@@ -208,11 +208,14 @@ fn places_count_from_the_active_area() {
 
 #[test]
 fn what_is_not_applied_is_said() {
-    let warp = Correction::Warp(Warp { planes: vec![[1.0, 0.1, 0.0, 0.0, 0.0, 0.0]], centre: (0.5, 0.5) });
+    let projection = Projection::Rectilinear;
+    let planes = vec![[1.0, 0.1, 0.0, 0.0, 0.0, 0.0]];
+    let warp = Correction::Warp(Warp { projection, planes, centre: (0.5, 0.5) });
     let warped = with(vec![], vec![warp], filters("RGGB"));
-    let recipe = Recipe { output: output(RgbSpace::SRGB, Bits::Eight), ..Recipe::default() };
+    let geometry = Geometry { lens: Lens::Off, ..Geometry::default() };
+    let recipe = Recipe { geometry, output: output(RgbSpace::SRGB, Bits::Eight), ..Recipe::default() };
     let plan = darkroot_tests::plan(&warped, None, &recipe).unwrap();
-    assert!(plan.notes.iter().any(|note| note.contains("WarpRectilinear")), "{:?}", plan.notes);
+    assert!(plan.notes.iter().any(|note| note.contains("distortion is not applied")), "{:?}", plan.notes);
     let plain = flat_grey(filters("RGGB"), SIZE, LEVEL);
     let expected = darkroot_tests::plan(&plain, None, &recipe).unwrap();
     assert!(expected.notes.is_empty());

@@ -9,6 +9,7 @@ mod corrections;
 mod crop;
 mod denoise;
 mod exposure;
+mod geometry;
 mod grey;
 mod highlights;
 mod hostile;

@@ -23,7 +23,7 @@ fn each_wrong_light_has_its_own_answer() {
 fn guesses_are_near_and_what_we_know_is_said() {
     let desk = Desk::with_dng();
     for (option, right, wrong) in [
-        ("--resize", "full size", "--recipe"),
+        ("--width", "`--resize` takes", "--recipe"),
         ("--sharpening", "`--sharpen` takes", "--space"),
         ("--outdir", "`-o` says", "-- --outdir"),
         ("--force", "`--overwrite`", "-- --force"),

@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn texts_that_mean_nothing_are_refused() {
         let one = |name: &str, text: &str| [(name.to_owned(), text.to_owned())].into();
-        assert!(Effective::from_texts(&one("sharpen", "1")).is_err());
+        assert!(Effective::from_texts(&one("clarity", "1")).is_err());
         assert!(Effective::from_texts(&one("look", "film")).is_err());
         assert_eq!(Effective::from_texts(&BTreeMap::new()).unwrap(), Effective::default());
     }

@@ -205,10 +205,18 @@ mod tests {
     }
 
     #[test]
+    fn an_amount_may_be_a_number() {
+        for text in ["sharpen = 1", "sharpen = 0.5", "denoise = 2", "sharpen = \"off\"", "straighten = -1.5"]
+        {
+            assert!(parsed(text).is_ok(), "{text}");
+        }
+    }
+
+    #[test]
     fn what_is_wrong_is_said_with_its_line_and_what_is_allowed() {
         for (text, words) in [
             ("\nspcae = \"srgb\"", [":2:", "`spcae`", "`space`?"]),
-            ("sharpen = 1", [":1:", "`sharpen`", "white-balance"]),
+            ("clarity = 1", [":1:", "`clarity`", "white-balance"]),
             ("bits = 16\n\nlook = 3", [":3:", "a number", "\"vivid\""]),
             ("white-balance = [2.1, 1, 1.5]", [":1:", "a list", "\"2.1,1,1.5\""]),
             ("white-balance = \"warm\"", [":1:", "`warm`", "5200K"]),
@@ -218,6 +226,7 @@ mod tests {
             ("[look]\nname = \"vivid\"", [":1:", "a table", "\"vivid\""]),
             ("root = \"yes\"", [":1:", "`root`", "true or false"]),
             ("look = vivid", [":1:", "TOML", "in quotes"]),
+            ("crop = 3", [":1:", "a number", "\"3:2\""]),
             ("exposure = inf", [":1:", "exposure", "-20 to 20"]),
         ] {
             let message = parsed(text).unwrap_err();

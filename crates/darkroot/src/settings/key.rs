@@ -54,6 +54,8 @@ impl Key {
         match self.setting().kind {
             Kind::Number { .. } => true,
             Kind::Words(words) => words.iter().any(|w| w.word.parse::<f64>().is_ok()),
+            // An amount is a word or a number.
+            Kind::Text { .. } => (self.setting().set)(&mut Settings::default(), "1").is_ok(),
             _ => false,
         }
     }

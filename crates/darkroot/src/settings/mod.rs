@@ -5,6 +5,7 @@
 pub mod setting;
 pub use setting::{Changes, Group, Kind, Setting, Word};
 
+mod geometry;
 mod words;
 
 pub mod table;
@@ -218,6 +219,7 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
         ("sharpen", recipe.sharpen == fixed.sharpen),
         ("demosaic", recipe.demosaic == fixed.demosaic),
         ("crop", recipe.crop == fixed.crop),
+        ("rotate, straighten, lens, resize and their like", recipe.geometry == fixed.geometry),
     ];
     let unheeded: Vec<&str> = heeded.iter().filter(|(_, fits)| !fits).map(|(name, _)| *name).collect();
     if unheeded.is_empty() { Ok(()) } else { Err(SettingsError::Engine { settings: unheeded }) }

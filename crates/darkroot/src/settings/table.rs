@@ -3,21 +3,21 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
+use super::geometry::{CROP, ENLARGE, FLIP, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN};
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, balance, light, number, one_of, profile, space};
 use super::words::{
-    AUTO, BITS, CHROMA, CROPS, DECODERS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH,
-    plain,
+    AUTO, BITS, CHROMA, DECODERS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
 };
 
 /// Writes what a text means into its place.
-fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
+pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), NotAValue> {
     *place = value?;
     Ok(())
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 22] = [
+pub const SETTINGS: [Setting; 29] = [
     Setting {
         name: "format",
         alias: None,
@@ -222,18 +222,14 @@ pub const SETTINGS: [Setting; 22] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.demosaic, one_of(&DEMOSAIC, text)),
     },
-    Setting {
-        name: "crop",
-        alias: None,
-        noun: "crop",
-        kind: Kind::Words(const { &plain(&CROPS) }),
-        default: "default",
-        group: Group::Picture,
-        placeholder: "",
-        help: "Which part of the frame",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.crop, one_of(&CROPS, text)),
-    },
+    ROTATE,
+    FLIP,
+    STRAIGHTEN,
+    PERSPECTIVE,
+    LENS,
+    CROP,
+    RESIZE,
+    ENLARGE,
     Setting {
         name: "profile",
         alias: None,

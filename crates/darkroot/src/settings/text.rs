@@ -35,7 +35,7 @@ impl NotAValue {
         Self { text: text.to_owned(), noun: "usable profile", allowed }
     }
 
-    fn plain(text: &str, noun: &'static str, allowed: impl Into<String>) -> Self {
+    pub(super) fn plain(text: &str, noun: &'static str, allowed: impl Into<String>) -> Self {
         Self { text: text.to_owned(), noun, allowed: allowed.into() }
     }
 }
@@ -203,7 +203,7 @@ pub fn numbers<T: std::str::FromStr>(text: &str) -> Option<Vec<T>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::words::{BITS, CHROMA, CROPS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, LOOKS};
+    use super::super::words::{BITS, CHROMA, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, LOOKS};
     use super::super::{Key, Settings};
     use super::*;
     use darkroot_encode::Format;
@@ -262,7 +262,6 @@ mod tests {
         same(&LOOKS);
         same(&HIGHLIGHTS);
         same(&DEMOSAIC);
-        same(&CROPS);
         same(&ENGINES);
         same(&DECODERS);
         same(&SWITCH);

@@ -1,13 +1,13 @@
 //! The words that settings of the table have for their values.
 
-use darkroot_develop::{Bits, Crop, Demosaic, Highlights, HotPixels, Look};
+use darkroot_develop::{Bits, Demosaic, Highlights, HotPixels, Look};
 use darkroot_encode::{ChromaSubsampling, Format};
 use darkroot_raw::Decoder;
 
 use super::Engine;
 use super::setting::Word;
 
-const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
+pub(super) const fn word<T>(word: &'static str, value: T, help: &'static str) -> Word<T> {
     Word { word, also: "", value, help }
 }
 
@@ -69,10 +69,6 @@ pub(super) const HOT_PIXELS: [Word<HotPixels>; 2] = [
 pub(super) const DEMOSAIC: [Word<Demosaic>; 2] = [
     word("best", Demosaic::Best, "The best for the sensor"),
     word("bilinear", Demosaic::Bilinear, "Fast and soft"),
-];
-pub(super) const CROPS: [Word<Crop>; 2] = [
-    word("default", Crop::Default, "What the maker shows"),
-    word("active", Crop::Active, "Everything that light falls on"),
 ];
 pub(super) const ENGINES: [Word<Engine>; 2] =
     [word("darkroot", Engine::Darkroot, ""), word("imagepipe", Engine::Imagepipe, "")];

@@ -27,7 +27,7 @@ use units::{Scan, Subsampling};
 const EXIF_LIMIT: usize = 65_527;
 
 /// Rows of a band, unless its units are too many to be counted.
-const BAND_ROWS: usize = 96;
+const BAND_ROWS: usize = 192;
 
 /// Writes a picture of a size that [`Format::sides`](crate::Format::sides) has allowed. Bands are parted by restart markers
 /// (ITU-T T.81, E.1.4), where prediction begins anew.

@@ -18,7 +18,7 @@ use crate::{Error, Format, Sample, exif};
 mod filter;
 
 /// Rows of a band.
-const BAND_ROWS: usize = 96;
+const BAND_ROWS: usize = 192;
 
 /// Level of deflate. Higher ones take five times as long for a file that is one in a hundred smaller: what is
 /// left of a photograph after the filter is mostly noise.

@@ -1,0 +1,109 @@
+//! What a person asks of the picture's frame.
+
+/// Which part of the frame is developed, in the upright picture. What lies outside of a picture that was straightened is
+/// never shown.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Crop {
+    /// What the maker shows.
+    #[default]
+    Default,
+    /// Everything that light falls on.
+    Active,
+    /// The largest middle part of what the maker shows with sides of this ratio: the long one to the short one. The picture
+    /// stays upright or level.
+    Aspect(f64),
+    /// This share of the width and the height of what the maker shows, in the middle; more than 0, at most 1.
+    Share(f64),
+    /// A rectangle of what the maker shows, in pixels.
+    Rect {
+        /// First column.
+        x: usize,
+        /// First row.
+        y: usize,
+        /// Number of columns.
+        width: usize,
+        /// Number of rows.
+        height: usize,
+    },
+}
+
+/// How the picture lies in the frame, and how large it gets.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Geometry {
+    /// Clockwise quarter turns of the picture that the camera says is upright.
+    pub turn: Turn,
+    /// Mirroring, after turning.
+    pub flip: Flip,
+    /// Degrees by which the picture is then turned clockwise, -45..=45.
+    pub straighten: f64,
+    /// Corners of what shall become a rectangle: top left, top right, bottom right, bottom left, each column and row in
+    /// pixels of the upright picture, before it is straightened.
+    pub perspective: Option<[[f64; 2]; 4]>,
+    /// The lens's distortion and lateral chromatic aberration.
+    pub lens: Lens,
+    /// Size of the picture.
+    pub resize: Resize,
+    /// Whether `resize` may make it larger than it is.
+    pub enlarge: bool,
+}
+
+/// Clockwise quarter turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Turn {
+    /// None.
+    #[default]
+    None,
+    /// A quarter turn.
+    Right,
+    /// Half a turn.
+    Half,
+    /// Three quarters, or one anticlockwise.
+    Left,
+}
+
+/// Mirroring.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Flip {
+    /// None.
+    #[default]
+    None,
+    /// Left becomes right.
+    Horizontal,
+    /// Top becomes bottom.
+    Vertical,
+}
+
+/// Which correction of the lens is applied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Lens {
+    /// What the file carries; in the linear look and in camera RGB none.
+    #[default]
+    Auto,
+    /// What the file carries.
+    File,
+    /// None.
+    Off,
+}
+
+/// Size of the picture; ratios of sides stay.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Resize {
+    /// As the sensor gives it.
+    #[default]
+    None,
+    /// Pixels of the long side.
+    Long(usize),
+    /// Pixels of the short side.
+    Short(usize),
+    /// As large as fits into so many columns and rows.
+    Fit {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// So many times as long and as wide; it may make a picture larger.
+    Share(f64),
+    /// Millions of pixels.
+    Megapixels(f64),
+}

@@ -1,0 +1,251 @@
+//! From what was asked to a rectangle of the frame, or to a map into it.
+
+use darkroot_colour::Matrix3;
+use darkroot_photo::{Capture, Correction, Orientation, Rect, Size};
+
+use super::homography::{from_square, moved, place, scaled, turned};
+use super::lens::LensWarp;
+use super::warp::Warp;
+use super::{Crop, Flip, Geometry, Lens, Resize, Turn};
+use crate::error::{Error, GeometryFault};
+
+/// Longest side of a picture.
+const LONGEST: f64 = 65_500.0;
+
+/// Where the picture lies in the frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Laid {
+    /// Size of the picture, upright.
+    pub(crate) size: Size,
+    /// What it shows of the frame, where it shows pixels of the frame as they are.
+    pub(crate) crop: Rect,
+    /// How that must be turned to stand upright.
+    pub(crate) orientation: Orientation,
+    /// Where its pixels come from, where that is between pixels.
+    pub(crate) warp: Option<Warp>,
+}
+
+impl Laid {
+    /// What became of the correction of the lens that the file carries.
+    pub(crate) fn lens_note(&self, capture: &Capture) -> Option<String> {
+        let is_warp = |correction: &Correction| matches!(correction, Correction::Warp(_));
+        let corrected = self.warp.as_ref().is_some_and(Warp::corrects_a_lens);
+        if corrected {
+            return Some("the lens's distortion is corrected as the file says".to_owned());
+        }
+        let mut all = capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
+        all.any(is_warp).then(|| "the file's correction of the lens's distortion is not applied".to_owned())
+    }
+
+    /// The pixel of the frame at a pixel of the picture.
+    pub(crate) fn in_frame(&self, capture: &Capture, x: usize, y: usize) -> (usize, usize) {
+        match &self.warp {
+            None => {
+                let (u, v) = self.orientation.inverse().place(x, y, self.size);
+                (self.crop.x + u, self.crop.y + v)
+            }
+            Some(warp) => {
+                let area = capture.active_area;
+                let [u, v] = warp.place(1, x as f64 + 0.5, y as f64 + 0.5);
+                let inside = |v: f64, length: usize| (v.max(0.0) as usize).min(length - 1);
+                (area.x + inside(u, area.width), area.y + inside(v, area.height))
+            }
+        }
+    }
+}
+
+/// Lays a picture into the frame. Nobody who measures gets the file's correction of the lens unasked.
+///
+/// # Errors
+/// A crop, corners or a size that cannot be.
+pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bool) -> Result<Laid, Error> {
+    let shown = if crop == Crop::Active { capture.active_area } else { capture.default_crop };
+    let orientation = oriented(capture.orientation, asked.turn, asked.flip);
+    let canvas = orientation.applied_to(shown.size());
+    let lens = match asked.lens {
+        Lens::Off => Vec::new(),
+        Lens::Auto if measuring => Vec::new(),
+        Lens::Auto | Lens::File => LensWarp::of(capture),
+    };
+    let straight = asked.straighten == 0.0 && asked.perspective.is_none();
+    let to_canvas = to_canvas(canvas, asked)?;
+    let part = part(crop, canvas, &to_canvas, straight)?;
+    let (width, height) = (part.width, part.height);
+    let size = resized(asked, width, height)?;
+    let whole = (size.width as f64, size.height as f64) == (width, height);
+    if straight && whole && lens.is_empty() {
+        let upright = Rect { x: part.x as usize, y: part.y as usize, width: size.width, height: size.height };
+        return Ok(Laid { size, crop: in_frame(upright, shown, orientation), orientation, warp: None });
+    }
+    let (across, down) = (width / size.width as f64, height / size.height as f64);
+    let area = capture.active_area;
+    let origin = moved((shown.x - area.x) as f64, (shown.y - area.y) as f64);
+    let to_frame = origin
+        * unturned(orientation, canvas, shown.size())
+        * to_canvas
+        * moved(part.x, part.y)
+        * scaled(across, down);
+    let warp = Warp::new(to_frame, lens, area.size(), across.max(down));
+    Ok(Laid { size, crop: shown, orientation, warp: Some(warp) })
+}
+
+/// What stands upright after one orientation, a turn and a mirroring, as one.
+fn oriented(camera: Orientation, turn: Turn, flip: Flip) -> Orientation {
+    let turn = match turn {
+        Turn::None => Orientation::Upright,
+        Turn::Right => Orientation::Rotate90,
+        Turn::Half => Orientation::Rotate180,
+        Turn::Left => Orientation::Rotate270,
+    };
+    let flip = match flip {
+        Flip::None => Orientation::Upright,
+        Flip::Horizontal => Orientation::MirrorHorizontal,
+        Flip::Vertical => Orientation::MirrorVertical,
+    };
+    camera.then(turn).then(flip)
+}
+
+/// From places of the straightened picture to those of the upright one.
+fn to_canvas(canvas: Size, asked: &Geometry) -> Result<Matrix3, Error> {
+    if !(-45.0..=45.0).contains(&asked.straighten) {
+        return Err(Error::Geometry { fault: GeometryFault::Angle, size: canvas });
+    }
+    let middle = [canvas.width as f64 / 2.0, canvas.height as f64 / 2.0];
+    let straightened = turned(-asked.straighten, middle);
+    let Some(corners) = asked.perspective else { return Ok(straightened) };
+    let wrong = Error::Geometry { fault: GeometryFault::Corners, size: canvas };
+    let from_square = from_square(corners).ok_or(wrong)?;
+    // The rectangle has the mean length of opposite sides, and the place of the corners' mean.
+    let side = |i: usize, j: usize| (corners[i][0] - corners[j][0]).hypot(corners[i][1] - corners[j][1]);
+    let (width, height) = (0.5 * (side(0, 1) + side(3, 2)), 0.5 * (side(0, 3) + side(1, 2)));
+    let mean = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 4.0);
+    let to_square = scaled(1.0 / width, 1.0 / height) * moved(0.5 * width - mean[0], 0.5 * height - mean[1]);
+    Ok(from_square * to_square * straightened)
+}
+
+/// A part of the straightened picture.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    x: f64,
+    y: f64,
+    width: f64,
+    height: f64,
+}
+
+/// What is shown of the straightened picture: nothing that is not in the upright one, whole pixels.
+fn part(crop: Crop, canvas: Size, to_canvas: &Matrix3, straight: bool) -> Result<Part, Error> {
+    let (width, height) = (canvas.width as f64, canvas.height as f64);
+    let wrong = |fault| Error::Geometry { fault, size: canvas };
+    if let Crop::Rect { x, y, width: w, height: h } = crop {
+        let ends = (x.checked_add(w), y.checked_add(h));
+        let within = ends.0.is_some_and(|x| x <= canvas.width) && ends.1.is_some_and(|y| y <= canvas.height);
+        let part = Part { x: x as f64, y: y as f64, width: w as f64, height: h as f64 };
+        return match within && w > 0 && h > 0 {
+            false => Err(wrong(GeometryFault::Crop)),
+            true if !straight && !is_inside(part, canvas, to_canvas) => Err(wrong(GeometryFault::CropCorner)),
+            true => Ok(part),
+        };
+    }
+    let ratio = match crop {
+        Crop::Aspect(ratio) if width >= height => ratio,
+        Crop::Aspect(ratio) => 1.0 / ratio,
+        _ => width / height,
+    };
+    if !(ratio.is_finite() && ratio > 0.0) {
+        return Err(wrong(GeometryFault::Crop));
+    }
+    let (full_width, full_height) = (width.min(height * ratio), height.min(width / ratio));
+    let centred = |share: f64| {
+        let (w, h) = (share * full_width, share * full_height);
+        Part { x: 0.5 * (width - w), y: 0.5 * (height - h), width: w, height: h }
+    };
+    let mut share = 1.0;
+    if !straight {
+        // The largest that is inside, by halving.
+        let (mut least, mut most) = (0.0, 1.0);
+        for _ in 0..40 {
+            share = 0.5 * (least + most);
+            if is_inside(centred(share), canvas, to_canvas) { least = share } else { most = share }
+        }
+        share = least;
+    }
+    if let Crop::Share(of) = crop {
+        share *= of;
+    }
+    let part = centred(share);
+    let (w, h) = if straight {
+        (part.width.round(), part.height.round())
+    } else {
+        (part.width.floor(), part.height.floor())
+    };
+    if !(w >= 1.0 && h >= 1.0) {
+        return Err(wrong(GeometryFault::Nothing));
+    }
+    let start = |whole: f64, w: f64| if straight { (0.5 * (whole - w)).floor() } else { 0.5 * (whole - w) };
+    Ok(Part { x: start(width, w), y: start(height, h), width: w, height: h })
+}
+
+/// Whether a part of the straightened picture lies in the upright one.
+fn is_inside(part: Part, canvas: Size, to_canvas: &Matrix3) -> bool {
+    let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
+    corners.into_iter().all(|(u, v)| {
+        let corner = place(to_canvas, [part.x + u * part.width, part.y + v * part.height]);
+        corner.is_some_and(|[x, y]| {
+            let within = |v: f64, length: usize| (-1e-6..=length as f64 + 1e-6).contains(&v);
+            within(x, canvas.width) && within(y, canvas.height)
+        })
+    })
+}
+
+/// Size of a picture of so many columns and rows.
+fn resized(asked: &Geometry, width: f64, height: f64) -> Result<Size, Error> {
+    let factor = match asked.resize {
+        Resize::None => 1.0,
+        Resize::Long(side) => side as f64 / width.max(height),
+        Resize::Short(side) => side as f64 / width.min(height),
+        Resize::Fit { width: w, height: h } => (w as f64 / width).min(h as f64 / height),
+        Resize::Share(share) => share,
+        Resize::Megapixels(mp) => (mp * 1e6 / (width * height)).sqrt(),
+    };
+    let may_grow = asked.enlarge || matches!(asked.resize, Resize::Share(_));
+    let factor = if may_grow || factor.is_nan() { factor } else { factor.min(1.0) };
+    let size = Size {
+        width: (width * factor).round().max(1.0) as usize,
+        height: (height * factor).round().max(1.0) as usize,
+    };
+    if !(factor > 0.0 && width.max(height) * factor <= LONGEST) {
+        return Err(Error::Geometry { fault: GeometryFault::Size, size });
+    }
+    Ok(size)
+}
+
+/// The rectangle of the frame that is a rectangle of the upright picture of `shown`.
+fn in_frame(upright: Rect, shown: Rect, orientation: Orientation) -> Rect {
+    let canvas = orientation.applied_to(shown.size());
+    let back = orientation.inverse();
+    let (x0, y0) = back.place(upright.x, upright.y, canvas);
+    let (x1, y1) = back.place(upright.right() - 1, upright.bottom() - 1, canvas);
+    Rect {
+        x: shown.x + x0.min(x1),
+        y: shown.y + y0.min(y1),
+        width: x0.abs_diff(x1) + 1,
+        height: y0.abs_diff(y1) + 1,
+    }
+}
+
+/// From places of the upright picture to those of what is shown of the frame.
+fn unturned(orientation: Orientation, canvas: Size, shown: Size) -> Matrix3 {
+    let back = orientation.inverse();
+    let two = Size { width: 2, height: 2 };
+    let at = |x: usize, y: usize| {
+        let (u, v) = back.place(x, y, two);
+        [u as f64, v as f64]
+    };
+    let (origin, right, below) = (at(0, 0), at(1, 0), at(0, 1));
+    let step = |to: [f64; 2], axis: usize| to[axis] - origin[axis];
+    let turn =
+        Matrix3::new(step(right, 0), step(below, 0), 0.0, step(right, 1), step(below, 1), 0.0, 0.0, 0.0, 1.0);
+    let half = |size: Size| (0.5 * size.width as f64, 0.5 * size.height as f64);
+    let ((u, v), (x, y)) = (half(canvas), half(shown));
+    moved(x, y) * turn * moved(-u, -v)
+}

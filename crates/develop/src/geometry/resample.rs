@@ -1,0 +1,122 @@
+//! Interpolates a picture at the places that a map names.
+
+use darkroot_colour::simd::vectorised;
+use darkroot_photo::{CameraSpace, Rect, Rgb};
+
+use super::taps::{GROUP, Taps};
+use super::warp::{Places, Warp};
+
+/// Makes `out` the part `rect` of the picture. `camera` holds `source`, the part of the frame that [`Warp::needs`] said.
+///
+/// Light is averaged as it is, linear. No pixel leaves the range of those it is made of, so edges get no rims.
+pub(crate) fn resample(
+    warp: &Warp,
+    (camera, source): (&Rgb<CameraSpace>, Rect),
+    places: &Places,
+    rect: Rect,
+    out: &mut Rgb<CameraSpace>,
+) {
+    out.resize(rect.size());
+    let mut work = Work { taps: &warp.taps, source, pixels: interleaved(camera), patch: Vec::new() };
+    let mut row = vec![[0.0; 2]; rect.width];
+    let mut found = vec![0f32; LANES * rect.width];
+    for y in 0..rect.height {
+        let planes = out.planes_mut().map(|plane| &mut plane[y * rect.width..][..rect.width]);
+        for channel in 0..places.channels() {
+            places.row(channel, rect.x, rect.y + y, &mut row);
+            work.row(&row, &mut found);
+            let channels = if places.channels() == 1 { 0..3 } else { channel..channel + 1 };
+            for c in channels {
+                for (v, pixel) in planes[c].iter_mut().zip(found.chunks_exact(LANES)) {
+                    *v = pixel[c];
+                }
+            }
+        }
+    }
+}
+
+/// Numbers of a pixel: red, green, blue, and one that means nothing.
+const LANES: usize = 4;
+
+fn interleaved(picture: &Rgb<CameraSpace>) -> Vec<f32> {
+    let [red, green, blue] = picture.planes();
+    red.iter().zip(green).zip(blue).flat_map(|((r, g), b)| [*r, *g, *b, 0.0]).collect()
+}
+
+struct Work<'a> {
+    taps: &'a Taps,
+    source: Rect,
+    pixels: Vec<f32>,
+    patch: Vec<f32>,
+}
+
+impl Work<'_> {
+    /// What lies at the places of a row.
+    fn row(&mut self, places: &[[f64; 2]], out: &mut [f32]) {
+        vectorised(
+            #[inline(always)]
+            || {
+                for (&place, out) in places.iter().zip(out.chunks_exact_mut(LANES)) {
+                    self.pixel(place, out);
+                }
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn pixel(&mut self, [x, y]: [f64; 2], out: &mut [f32]) {
+        let ((left, columns), (top, rows)) = (self.taps.at(x), self.taps.at(y));
+        let rows = &rows[..self.taps.count];
+        let (left, top) = (left - self.source.x as isize, top - self.source.y as isize);
+        let fits = |first: isize, count: usize, length: usize| first >= 0 && first as usize + count <= length;
+        if fits(left, columns.len(), self.source.width) && fits(top, rows.len(), self.source.height) {
+            let begin = top as usize * self.source.width + left as usize;
+            return mean(&self.pixels[LANES * begin..], LANES * self.source.width, (columns, rows), out);
+        }
+        self.copy_edge((left, columns.len()), (top, rows.len()));
+        mean(&self.patch, LANES * columns.len(), (columns, rows), out);
+    }
+
+    /// Copies pixels at an edge of the frame, beyond which its last ones go on.
+    #[inline(never)]
+    fn copy_edge(&mut self, (left, columns): (isize, usize), (top, rows): (isize, usize)) {
+        self.patch.clear();
+        for j in 0..rows as isize {
+            let row = (top + j).clamp(0, self.source.height as isize - 1) as usize * self.source.width;
+            let column = |i: isize| (left + i).clamp(0, self.source.width as isize - 1) as usize;
+            for i in 0..columns as isize {
+                self.patch.extend_from_slice(&self.pixels[LANES * (row + column(i))..][..LANES]);
+            }
+        }
+    }
+}
+
+/// The weighted mean of the pixels from the first one on, within their range: down the columns of a group, then across.
+#[inline(always)]
+fn mean(pixels: &[f32], width: usize, (columns, rows): (&[f32], &[f32]), out: &mut [f32]) {
+    const NUMBERS: usize = LANES * GROUP;
+    let (mut sum, mut low, mut high) = ([0f32; LANES], [f32::MAX; LANES], [f32::MIN; LANES]);
+    for (group, weights) in columns.chunks_exact(GROUP).enumerate() {
+        let (mut mean, mut least, mut most) = ([0f32; NUMBERS], [f32::MAX; NUMBERS], [f32::MIN; NUMBERS]);
+        for (j, of_row) in rows.iter().enumerate() {
+            let row = &pixels[j * width + group * NUMBERS..][..NUMBERS];
+            for (((mean, least), most), v) in mean.iter_mut().zip(&mut least).zip(&mut most).zip(row) {
+                *mean += of_row * v;
+                *least = if v < least { *v } else { *least };
+                *most = if v > most { *v } else { *most };
+            }
+        }
+        for (k, weight) in weights.iter().enumerate() {
+            for i in 0..LANES {
+                let at = LANES * k + i;
+                sum[i] += weight * mean[at];
+                low[i] = if least[at] < low[i] { least[at] } else { low[i] };
+                high[i] = if most[at] > high[i] { most[at] } else { high[i] };
+            }
+        }
+    }
+    for (i, out) in out.iter_mut().enumerate().take(LANES) {
+        let v = if sum[i] < high[i] { sum[i] } else { high[i] };
+        *out = if v > low[i] { v } else { low[i] };
+    }
+}
