@@ -1,0 +1,271 @@
+//! The lens of a shot.
+
+use serde::Serialize;
+
+use crate::catalogue::{self, Camera, Lens};
+use crate::corrections::{Corrections, Distortion, Known, Measured, Tca, Vignetting};
+use crate::interpolate;
+use crate::name;
+
+/// How far beyond its range a lens's focal length may be written, as a part of it: cameras round.
+const FOCAL_ROUNDING: f64 = 0.07;
+
+/// A sensor this much larger than the one that a lens was measured with still counts as that one (as in lensfun).
+const SAME_CROP: f64 = 0.96;
+
+/// What stands for a distance that is not known, in m (the manual of lensfun recommends it).
+const FAR: f64 = 1000.0;
+
+/// What a photograph's metadata say of camera and lens.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Shot<'a> {
+    /// The camera's maker (Exif `Make`).
+    pub camera_make: &'a str,
+    /// The camera's model (Exif `Model`).
+    pub camera_model: &'a str,
+    /// The lens's maker (Exif `LensMake`).
+    pub lens_make: Option<&'a str>,
+    /// The lens's name (Exif `LensModel`, or what a maker note has).
+    pub lens_model: Option<&'a str>,
+    /// Focal length in mm, as on the lens.
+    pub focal_length: f64,
+    /// F-number. Without it there is no correction of vignetting.
+    pub aperture: Option<f64>,
+    /// Distance of what is in focus, in m; far away if not known.
+    pub distance: Option<f64>,
+    /// Diagonal of a frame of 36 mm x 24 mm through that of the picture, where it is not that of the camera's whole
+    /// sensor, or the database may not know the camera.
+    pub crop_factor: Option<f64>,
+}
+
+impl<'a> Shot<'a> {
+    /// A shot of which only camera and focal length (mm) are known.
+    pub fn new(camera_make: &'a str, camera_model: &'a str, focal_length: f64) -> Self {
+        Self { camera_make, camera_model, focal_length, ..Self::default() }
+    }
+}
+
+/// By what a lens was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Found {
+    /// Its name.
+    Name,
+    /// The metadata have only focal lengths and f-numbers ("18.0-55.0 mm f/3.5-5.6"), and one zoom lens of the database
+    /// that fits the camera has these. There may be lenses that the database does not know.
+    Numbers,
+    /// The camera: its lens cannot be changed.
+    Camera,
+}
+
+/// A lens of the database, and what is known of it at the settings of a shot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Match {
+    /// Camera of the database, maker and model; `None` if it has none such.
+    pub camera: Option<String>,
+    /// Lens of the database, maker and model.
+    pub lens: String,
+    /// By what it was found.
+    pub found: Found,
+    known: Known,
+}
+
+impl Match {
+    /// Whether distortion was measured.
+    pub fn has_distortion(&self) -> bool {
+        self.known.distortion.is_some()
+    }
+
+    /// Whether lateral chromatic aberration was measured.
+    pub fn has_tca(&self) -> bool {
+        self.known.tca.is_some()
+    }
+
+    /// Whether vignetting was measured near the aperture of the shot.
+    pub fn has_vignetting(&self) -> bool {
+        self.known.vignetting.is_some()
+    }
+
+    /// The corrections of a picture of the whole sensor, width and height in pixels, either way up.
+    pub fn corrections(&self, size: (usize, usize)) -> Corrections {
+        self.known.over(size)
+    }
+}
+
+/// The lens that a shot was taken with, if the database knows it for sure: by its name, or because the camera has no
+/// other. Nothing is loaded before and nothing kept.
+pub fn find(shot: &Shot) -> Option<Match> {
+    if !(shot.focal_length.is_finite() && shot.focal_length > 0.0) {
+        return None;
+    }
+    let camera = camera(shot);
+    let crop = shot.crop_factor.or(camera.map(|c| c.crop))?;
+    if !(0.05..=50.0).contains(&crop) {
+        return None;
+    }
+    let (lenses, found) = match camera.filter(Camera::is_fixed) {
+        Some(camera) => (fixed(shot, &camera)?, Found::Camera),
+        None => named(shot, camera.as_ref())?,
+    };
+    let lens = lenses.first()?;
+    let full = |makers: &str, model: &str| {
+        let known = model.to_lowercase().starts_with(&makers.to_lowercase());
+        if known || makers.is_empty() { model.to_owned() } else { format!("{makers} {model}") }
+    };
+    Some(Match {
+        camera: camera.map(|c| full(c.makers.first(), c.models.first())),
+        lens: full(lens.makers().first(), lens.models().first()),
+        found,
+        known: known(shot, &lenses, crop),
+    })
+}
+
+/// The camera of a shot: same model, and a maker with a name in common.
+fn camera(shot: &Shot) -> Option<Camera> {
+    let model = name::words(shot.camera_model);
+    let asked = name::brand([shot.camera_make, shot.camera_model]);
+    let without = |words: &[String], brand: &[String]| -> Vec<String> {
+        words.iter().filter(|word| !brand.contains(word)).cloned().collect()
+    };
+    catalogue::cameras().find(|camera| {
+        let brand = name::brand(camera.makers.iter());
+        let bare = without(&model, &brand);
+        !bare.is_empty()
+            && brand.iter().any(|word| asked.contains(word))
+            && camera.models.iter().any(|known| without(&name::words(known), &brand) == bare)
+    })
+}
+
+/// The lens of a camera that has one only: not with a converter, and not a phone's other one.
+fn fixed(shot: &Shot, camera: &Camera) -> Option<Vec<Lens>> {
+    let fits = |lens: &Lens| lens.mounts().iter().any(|mount| mount == camera.mount);
+    let plain = |lens: &Lens| !lens.models().first().contains(", ") && !lens.models().first().contains('+');
+    let lenses =
+        catalogue::lenses().filter(|lens| fits(lens) && plain(lens) && reaches(*lens, shot.focal_length));
+    one_lens(lenses.collect())
+}
+
+/// The lens that a shot names.
+fn named(shot: &Shot, camera: Option<&Camera>) -> Option<(Vec<Lens>, Found)> {
+    let text = shot.lens_model?;
+    let mounts = camera.map(Camera::mounts);
+    let fits = |lens: &Lens| match &mounts {
+        Some(mounts) => lens.mounts().iter().any(|mount| mounts.contains(&mount)),
+        None => !lens.mounts().iter().all(catalogue::is_fixed),
+    };
+    let asked = Asked::new(shot, text);
+    let candidates: Vec<(Lens, Likeness)> = catalogue::lenses()
+        .filter(fits)
+        .filter_map(|lens| Some((lens, asked.likeness(lens)?)))
+        .filter(|(lens, _)| reaches(*lens, shot.focal_length))
+        .collect();
+    let best = candidates.iter().map(|(_, likeness)| *likeness).min()?;
+    let lenses =
+        candidates.into_iter().filter(|(_, likeness)| *likeness == best).map(|(lens, _)| lens).collect();
+    let found = if best == Likeness::Numbers { Found::Numbers } else { Found::Name };
+    Some((one_lens(lenses)?, found))
+}
+
+/// How a lens's name is like the one asked for, best first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Likeness {
+    /// The same but for so many words that say little.
+    Name(usize),
+    /// Only numbers were asked for, and they are the same.
+    Numbers,
+}
+
+/// A lens as the metadata name it.
+struct Asked {
+    words: Vec<String>,
+    /// The lens's maker, as far as the metadata say.
+    maker: Vec<String>,
+    camera_maker: Vec<String>,
+}
+
+impl Asked {
+    fn new(shot: &Shot, text: &str) -> Self {
+        Self {
+            words: name::words(text),
+            maker: name::brand(shot.lens_make),
+            camera_maker: name::brand([shot.camera_make]),
+        }
+    }
+
+    fn likeness(&self, lens: Lens) -> Option<Likeness> {
+        let brand = name::brand(lens.makers().iter());
+        if !self.maker.is_empty() && !self.maker.iter().any(|word| brand.contains(word)) {
+            return None;
+        }
+        let words: Vec<String> = self.words.iter().filter(|word| !brand.contains(word)).cloned().collect();
+        // Whose lens it is, is clear; else the name must be the same with the maker's in it.
+        let is_of_maker = words.len() < self.words.len()
+            || !self.maker.is_empty()
+            || self.camera_maker.iter().any(|word| brand.contains(word));
+        let only_numbers = words.iter().all(|word| name::is_number(word));
+        let names = lens.models();
+        if only_numbers && words.len() == self.words.len() && self.maker.is_empty() || words.is_empty() {
+            let is_zoom = lens.focal_range().1 > lens.focal_range().0;
+            let same = names.iter().any(|known| {
+                let known = name::words(known);
+                known.iter().filter(|word| name::is_number(word)).eq(&words)
+            });
+            return (is_zoom && words.len() >= 3 && same).then_some(Likeness::Numbers);
+        }
+        let differences = names.iter().filter_map(|known| {
+            let mut known = name::words(known);
+            known.retain(|word| !(is_of_maker && brand.contains(word)));
+            name::difference(&words, &known)
+        });
+        differences.min().map(Likeness::Name)
+    }
+}
+
+/// Whether a lens has such a focal length, in mm.
+fn reaches(lens: Lens, focal: f64) -> bool {
+    let (shortest, longest) = lens.focal_range();
+    let longest = if longest > 0.0 { longest } else { f64::INFINITY };
+    focal >= shortest * (1.0 - FOCAL_ROUNDING) && focal <= longest * (1.0 + FOCAL_ROUNDING)
+}
+
+/// The lenses, if they are all one and the same on different sensors.
+fn one_lens(lenses: Vec<Lens>) -> Option<Vec<Lens>> {
+    let first = *lenses.first()?;
+    let maker = |lens: Lens| name::brand(lens.makers().iter());
+    let model = |lens: Lens| name::words(lens.models().first());
+    let same = |lens: &Lens| {
+        lens.models().first() == first.models().first()
+            || (maker(*lens) == maker(first) && name::difference(&model(*lens), &model(first)) == Some(0))
+    };
+    lenses.iter().all(same).then_some(lenses)
+}
+
+/// What is known of a lens at the settings of a shot: each correction from the smallest sensor it was measured with that
+/// covers the one at hand.
+fn known(shot: &Shot, lenses: &[Lens], crop: f64) -> Known {
+    let mut lenses: Vec<Lens> =
+        lenses.iter().copied().filter(|lens| crop >= lens.crop() * SAME_CROP).collect();
+    lenses.sort_by(|a, b| b.crop().total_cmp(&a.crop()));
+    let measured = |lens: Lens| Measured { crop: lens.crop() / crop, aspect: lens.aspect() };
+    let focal = shot.focal_length;
+    let distance = shot.distance.filter(|d| d.is_finite() && *d > 0.0).unwrap_or(FAR);
+    Known {
+        distortion: lenses.iter().find_map(|lens| {
+            let [_, a, b, c] = interpolate::at_focal(&lens.distortion(), focal, |_| true)?;
+            Some(Distortion { terms: [a, b, c], is_poly5: lens.is_poly5(), measured: measured(*lens) })
+        }),
+        tca: lenses.iter().find_map(|lens| {
+            let constant = |i| matches!(i, 1 | 4);
+            let found = interpolate::at_focal(&lens.tca(), focal, |i| !constant(i))?;
+            let [_, r0, r1, r2, b0, b1, b2] = found;
+            Some(Tca { red: [r0, r1, r2], blue: [b0, b1, b2], measured: measured(*lens) })
+        }),
+        vignetting: shot.aperture.and_then(|aperture| {
+            lenses.iter().find_map(|lens| {
+                let rows = lens.vignetting();
+                let terms = interpolate::vignetting(&rows, lens.focal_range(), focal, aperture, distance)?;
+                Some(Vignetting { terms, measured: measured(*lens) })
+            })
+        }),
+    }
+}
