@@ -46,7 +46,7 @@ impl<'a> Shot<'a> {
 }
 
 /// By what a lens was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Found {
     /// Its name.
@@ -120,29 +120,38 @@ pub fn find(shot: &Shot) -> Option<Match> {
     })
 }
 
-/// The camera of a shot: same model, and a maker with a name in common.
+/// The camera of a shot: same model, and a maker with a name in common; `None` also if that says two that differ.
 fn camera(shot: &Shot) -> Option<Camera> {
     let model = name::words(shot.camera_model);
     let asked = name::brand([shot.camera_make, shot.camera_model]);
     let without = |words: &[String], brand: &[String]| -> Vec<String> {
         words.iter().filter(|word| !brand.contains(word)).cloned().collect()
     };
-    catalogue::cameras().find(|camera| {
+    let is_it = |camera: &Camera| {
         let brand = name::brand(camera.makers.iter());
         let bare = without(&model, &brand);
         !bare.is_empty()
             && brand.iter().any(|word| asked.contains(word))
             && camera.models.iter().any(|known| without(&name::words(known), &brand) == bare)
-    })
+    };
+    let numbers = name::numbers(&model);
+    let mut found = catalogue::cameras(&numbers).filter(is_it);
+    let first = found.next()?;
+    // Some have modes with frames of different shape, each with a crop factor.
+    let same_crop =
+        |other: Camera| shot.crop_factor.is_some() || (other.crop / first.crop - 1.0).abs() < 0.01;
+    found.all(|other| other.mount == first.mount && same_crop(other)).then_some(first)
 }
 
-/// The lens of a camera that has one only: not with a converter, and not a phone's other one.
+/// The lens of a camera that has one only: not with a converter, and not a phone's other one. What the firmware CHDK
+/// stored is raw, as what is to be corrected; of others, the camera's own pictures may have been measured.
 fn fixed(shot: &Shot, camera: &Camera) -> Option<Vec<Lens>> {
     let fits = |lens: &Lens| lens.mounts().iter().any(|mount| mount == camera.mount);
-    let plain = |lens: &Lens| !lens.models().first().contains(", ") && !lens.models().first().contains('+');
-    let lenses =
-        catalogue::lenses().filter(|lens| fits(lens) && plain(lens) && reaches(*lens, shot.focal_length));
-    one_lens(lenses.collect())
+    let lenses = catalogue::lenses(&[]).filter(|lens| fits(lens) && reaches(*lens, shot.focal_length));
+    let (raw, others): (Vec<Lens>, Vec<Lens>) =
+        lenses.partition(|lens| lens.models().first().ends_with("with CHDK's DNG"));
+    let plain = |lens: &Lens| [", ", " + "].iter().all(|with| !lens.models().first().contains(with));
+    one_lens(raw).or_else(|| one_lens(others.into_iter().filter(plain).collect()))
 }
 
 /// The lens that a shot names.
@@ -154,25 +163,26 @@ fn named(shot: &Shot, camera: Option<&Camera>) -> Option<(Vec<Lens>, Found)> {
         None => !lens.mounts().iter().all(catalogue::is_fixed),
     };
     let asked = Asked::new(shot, text);
-    let candidates: Vec<(Lens, Likeness)> = catalogue::lenses()
+    let mut candidates: Vec<(Lens, Likeness)> = catalogue::lenses(&name::numbers(&asked.words))
         .filter(fits)
         .filter_map(|lens| Some((lens, asked.likeness(lens)?)))
         .filter(|(lens, _)| reaches(*lens, shot.focal_length))
         .collect();
     let best = candidates.iter().map(|(_, likeness)| *likeness).min()?;
-    let lenses =
-        candidates.into_iter().filter(|(_, likeness)| *likeness == best).map(|(lens, _)| lens).collect();
-    let found = if best == Likeness::Numbers { Found::Numbers } else { Found::Name };
-    Some((one_lens(lenses)?, found))
+    candidates
+        .retain(|(_, likeness)| (likeness.found, likeness.differences) == (best.found, best.differences));
+    candidates.sort_by_key(|(_, likeness)| *likeness);
+    Some((one_lens(candidates.into_iter().map(|(lens, _)| lens).collect())?, best.found))
 }
 
 /// How a lens's name is like the one asked for, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Likeness {
-    /// The same but for so many words that say little.
-    Name(usize),
-    /// Only numbers were asked for, and they are the same.
-    Numbers,
+struct Likeness {
+    found: Found,
+    /// In how many words that say little it differs.
+    differences: usize,
+    /// Which of the lens's names it is.
+    name: usize,
 }
 
 /// A lens as the metadata name it.
@@ -186,7 +196,7 @@ struct Asked {
 impl Asked {
     fn new(shot: &Shot, text: &str) -> Self {
         Self {
-            words: name::words(text),
+            words: name::lens_words(text),
             maker: name::brand(shot.lens_make),
             camera_maker: name::brand([shot.camera_make]),
         }
@@ -194,30 +204,31 @@ impl Asked {
 
     fn likeness(&self, lens: Lens) -> Option<Likeness> {
         let brand = name::brand(lens.makers().iter());
-        if !self.maker.is_empty() && !self.maker.iter().any(|word| brand.contains(word)) {
+        let is_in_name = |word| lens.models().iter().any(|known| name::lens_words(known).contains(word));
+        if !self.maker.is_empty() && !self.maker.iter().any(|word| brand.contains(word) || is_in_name(word)) {
             return None;
         }
         let words: Vec<String> = self.words.iter().filter(|word| !brand.contains(word)).cloned().collect();
         // Whose lens it is, is clear; else the name must be the same with the maker's in it.
-        let is_of_maker = words.len() < self.words.len()
-            || !self.maker.is_empty()
-            || self.camera_maker.iter().any(|word| brand.contains(word));
+        let says_maker = words.len() < self.words.len() || !self.maker.is_empty();
+        let is_of_maker = says_maker || self.camera_maker.iter().any(|word| brand.contains(word));
         let only_numbers = words.iter().all(|word| name::is_number(word));
-        let names = lens.models();
-        if only_numbers && words.len() == self.words.len() && self.maker.is_empty() || words.is_empty() {
-            let is_zoom = lens.focal_range().1 > lens.focal_range().0;
-            let same = names.iter().any(|known| {
-                let known = name::words(known);
-                known.iter().filter(|word| name::is_number(word)).eq(&words)
-            });
-            return (is_zoom && words.len() >= 3 && same).then_some(Likeness::Numbers);
-        }
-        let differences = names.iter().filter_map(|known| {
-            let mut known = name::words(known);
+        let names = || lens.models().iter().map(name::lens_words).enumerate();
+        let by_name = |(name, mut known): (usize, Vec<String>)| {
             known.retain(|word| !(is_of_maker && brand.contains(word)));
-            name::difference(&words, &known)
-        });
-        differences.min().map(Likeness::Name)
+            let differences = name::difference(&words, &known)?;
+            Some(Likeness { found: Found::Name, differences, name })
+        };
+        // Numbers alone name a lens only together with its maker.
+        let is_name = !words.is_empty() && (!only_numbers || says_maker);
+        let (shortest, longest) = lens.focal_range();
+        let is_zoom = words.len() >= 3 && longest > shortest;
+        let by_numbers = |(name, known): (usize, Vec<String>)| {
+            let same = known.iter().filter(|word| name::is_number(word)).eq(&words);
+            same.then_some(Likeness { found: Found::Numbers, differences: 0, name })
+        };
+        let by_name = is_name.then(|| names().filter_map(by_name).min()).flatten();
+        by_name.or_else(|| (only_numbers && is_zoom).then(|| names().find_map(by_numbers)).flatten())
     }
 }
 
@@ -228,14 +239,14 @@ fn reaches(lens: Lens, focal: f64) -> bool {
     focal >= shortest * (1.0 - FOCAL_ROUNDING) && focal <= longest * (1.0 + FOCAL_ROUNDING)
 }
 
-/// The lenses, if they are all one and the same on different sensors.
+/// The lenses, if they are all one and the same, by one of its names, perhaps on different sensors.
 fn one_lens(lenses: Vec<Lens>) -> Option<Vec<Lens>> {
     let first = *lenses.first()?;
-    let maker = |lens: Lens| name::brand(lens.makers().iter());
-    let model = |lens: Lens| name::words(lens.models().first());
+    let brand = name::brand(first.makers().iter());
+    let names: Vec<_> = first.models().iter().map(name::lens_words).collect();
     let same = |lens: &Lens| {
-        lens.models().first() == first.models().first()
-            || (maker(*lens) == maker(first) && name::difference(&model(*lens), &model(first)) == Some(0))
+        name::brand(lens.makers().iter()) == brand
+            && lens.models().iter().any(|model| names.contains(&name::lens_words(model)))
     };
     lenses.iter().all(same).then_some(lenses)
 }

@@ -1,4 +1,4 @@
-//! Names of makers, cameras and lenses as sorted words, so that spelling does not matter: "EF-S18-55mm f/3.5-5.6" and
+//! Names of makers, cameras and lenses as words, those of lenses sorted, so that spelling does not matter: "EF-S18-55mm f/3.5-5.6" and
 //! "Canon EF-S 18-55mm F3.5-5.6" have the same, but for the maker.
 
 /// No name is longer; what comes after is not read.
@@ -45,9 +45,18 @@ const BRANDS: [&[&str]; 9] = [
     &["samyang", "rokinon"],
 ];
 
-/// Words of a name, sorted: runs of letters or of digits in small letters, numbers without closing zeros. What says
-/// nothing is left out: "mm", "f/", "1:", and the maker's number of a model ("A007N", "018", "(SEL35F14GM)").
+/// Words of a name of a maker or camera as they come (a Canon EOS D2000 is no EOS 2000D): runs of letters or of digits
+/// in small letters, numbers without closing zeros.
 pub(crate) fn words(text: &str) -> Vec<String> {
+    let text: String = text.chars().take(LONGEST).collect();
+    let mut found = Vec::new();
+    split(&text.to_lowercase(), &mut found);
+    found
+}
+
+/// Words of a lens's name, sorted, without what says nothing: "mm", "f/", "1:", and the maker's number of a model
+/// ("A007N", "018", "(SEL35F14GM)").
+pub(crate) fn lens_words(text: &str) -> Vec<String> {
     let text: String = text.chars().take(LONGEST).collect();
     let text = text.to_lowercase().replace("o.i.s.", "ois").replace("1:", " ");
     let mut found = Vec::new();
@@ -69,7 +78,7 @@ pub(crate) fn words(text: &str) -> Vec<String> {
     found
 }
 
-/// Runs of letters, numbers, stars and pluses in a text without spaces.
+/// Runs of letters, numbers, stars and pluses.
 fn split(part: &str, found: &mut Vec<String>) {
     let mut chars = part.chars().peekable();
     while let Some(first) = chars.next() {
@@ -118,6 +127,11 @@ pub(crate) fn is_number(word: &str) -> bool {
     word.starts_with(|first: char| first.is_ascii_digit())
 }
 
+/// The words that are numbers.
+pub(crate) fn numbers(words: &[String]) -> Vec<&str> {
+    words.iter().map(String::as_str).filter(|word| is_number(word)).collect()
+}
+
 /// What a maker goes by, from names of the firm: its words, and the names under which its lenses go.
 pub(crate) fn brand<'a>(makers: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let mut found: Vec<String> =
@@ -163,12 +177,12 @@ mod tests {
     use super::*;
 
     fn differ(one: &str, other: &str) -> Option<usize> {
-        difference(&words(one), &words(other))
+        difference(&lens_words(one), &lens_words(other))
     }
 
     #[test]
     fn spelling_does_not_matter() {
-        assert_eq!(words("EF-S18-55mm f/3.5-5.6"), ["18", "3.5", "5.6", "55", "ef", "s"]);
+        assert_eq!(lens_words("EF-S18-55mm f/3.5-5.6"), ["18", "3.5", "5.6", "55", "ef", "s"]);
         assert_eq!(differ("XF18-55mmF2.8-4 R LM OIS", "XF 18-55mm f/2.8-4.0 R LM OIS"), Some(0));
         assert_eq!(differ("24-70mm F2.8 DG DN | Art 019", "24-70mm f/2.8 DG DN [A]"), Some(0));
         assert_eq!(differ("SP 24-70mm F/2.8 Di VC USD A007N", "SP 24-70mm F/2.8 Di VC USD"), Some(0));
