@@ -195,11 +195,10 @@ struct Asked {
 
 impl Asked {
     fn new(shot: &Shot, text: &str) -> Self {
-        Self {
-            words: name::lens_words(text),
-            maker: name::brand(shot.lens_make),
-            camera_maker: name::brand([shot.camera_make]),
-        }
+        let words = name::lens_words(text);
+        let sigma = shot.lens_make.is_none() && name::is_sigma(&words);
+        let maker = name::brand(if sigma { Some("Sigma") } else { shot.lens_make });
+        Self { words, maker, camera_maker: name::brand([shot.camera_make]) }
     }
 
     fn likeness(&self, lens: Lens) -> Option<Likeness> {
@@ -216,7 +215,7 @@ impl Asked {
         let names = || lens.models().iter().map(name::lens_words).enumerate();
         let by_name = |(name, mut known): (usize, Vec<String>)| {
             known.retain(|word| !(is_of_maker && brand.contains(word)));
-            let differences = name::difference(&words, &known)?;
+            let differences = name::difference(&words, &known, &brand)?;
             Some(Likeness { found: Found::Name, differences, name })
         };
         // Numbers alone name a lens only together with its maker.

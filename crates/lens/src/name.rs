@@ -10,6 +10,9 @@ const EMPTY: [&str; 5] = ["mm", "f", "mmf", "lens", "fmm"];
 /// Words that makers write or leave out for one and the same lens.
 const WEAK: [&str; 9] = ["zoom", "ed", "if", "al", "asph", "aspherical", "digital", "power", "mega"];
 
+/// Words that cameras of a maker leave out of the names of its lenses.
+const OMITTED: [(&str, &[&str]); 2] = [("olympus", &["pro", "is"]), ("panasonic", &["ois"])];
+
 /// Words of firms, not of their names.
 const FIRM: [&str; 18] = [
     "ag",
@@ -75,6 +78,8 @@ pub(crate) fn lens_words(text: &str) -> Vec<String> {
     }
     found.retain(|word| !EMPTY.contains(&word.as_str()));
     found.sort_unstable();
+    // "Contemporary C 016".
+    found.dedup_by(|a, b| a == b && !is_number(a));
     found
 }
 
@@ -145,26 +150,37 @@ pub(crate) fn brand<'a>(makers: impl IntoIterator<Item = &'a str>) -> Vec<String
     found
 }
 
-/// How many words two names differ in, if all of these say little; `None` if one matters. Both sorted.
-pub(crate) fn difference(one: &[String], other: &[String]) -> Option<usize> {
+/// Whether a name has the words by which Sigma, and nobody else, names its lenses. Other makers' bodies do
+/// not write whose a lens is.
+pub(crate) fn is_sigma(words: &[String]) -> bool {
+    let has = |word: &str| words.iter().any(|w| w == word);
+    has("dg") && (has("hsm") || has("dn") || has("os")) || has("dc") && (has("hsm") || has("dn"))
+}
+
+/// How many words the name of a lens of a maker differs in from the one asked for, if all of these say little; `None` if
+/// one matters. Both sorted.
+pub(crate) fn difference(asked: &[String], known: &[String], brand: &[String]) -> Option<usize> {
+    let is_omitted = |word: &str| {
+        OMITTED.iter().any(|(maker, words)| words.contains(&word) && brand.iter().any(|name| name == maker))
+    };
     let (mut i, mut j, mut count) = (0, 0, 0);
-    while i < one.len() || j < other.len() {
-        let odd = match (one.get(i), other.get(j)) {
+    while i < asked.len() || j < known.len() {
+        let (odd, is_known) = match (asked.get(i), known.get(j)) {
             (Some(a), Some(b)) if a == b => {
                 (i, j) = (i + 1, j + 1);
                 continue;
             }
             (Some(a), b) if b.is_none_or(|b| a < b) => {
                 i += 1;
-                a
+                (a, false)
             }
             (_, Some(b)) => {
                 j += 1;
-                b
+                (b, true)
             }
             (Some(_), None) | (None, None) => return None,
         };
-        if !WEAK.contains(&odd.as_str()) {
+        if !(WEAK.contains(&odd.as_str()) || is_known && is_omitted(odd)) {
             return None;
         }
         count += 1;
@@ -177,7 +193,7 @@ mod tests {
     use super::*;
 
     fn differ(one: &str, other: &str) -> Option<usize> {
-        difference(&lens_words(one), &lens_words(other))
+        difference(&lens_words(one), &lens_words(other), &brand(["Panasonic"]))
     }
 
     #[test]
@@ -198,6 +214,9 @@ mod tests {
         assert_eq!(differ("50mm f/1.8", "50mm f/1.4"), None);
         assert_eq!(differ("DA* 16-50mm", "DA 16-50mm"), None);
         assert_eq!(differ("", ""), Some(0));
+        // Left out by the camera, never added.
+        assert_eq!(differ("12-32/F3.5-5.6", "12-32mm f/3.5-5.6 Asph. Mega OIS"), Some(3));
+        assert_eq!(differ("12-32/F3.5-5.6 Asph. Mega OIS", "12-32mm f/3.5-5.6"), None);
     }
 
     #[test]
