@@ -59,6 +59,8 @@ fn lens_line(mut lens: Lens, text: &mut String, numbers: &mut Vec<u8>) -> Result
             VignettingModel::None => None,
         })
         .collect();
+    let (distortion, tca) = (last_of_each(&distortion, 1), last_of_each(&tca, 1));
+    let vignetting = last_of_each(&vignetting, 3);
     let all = distortion.as_flattened().iter().chain(tca.as_flattened()).chain(vignetting.as_flattened());
     numbers.extend(all.flat_map(|n| n.to_le_bytes()));
     writeln!(
@@ -101,6 +103,13 @@ fn tca_rows(lens: &Lens) -> Vec<[f32; 7]> {
     let known: Vec<_> = known.collect();
     let first = known.first().is_some_and(|(model, _)| *model);
     known.iter().filter(|(model, _)| *model == first).map(|(_, row)| *row).collect()
+}
+
+/// Rows without those whose first numbers come once more: of measurements at the same settings, the last counts, as in
+/// lensfun 0.3.
+fn last_of_each<const N: usize>(rows: &[[f32; N]], keys: usize) -> Vec<[f32; N]> {
+    let again = |at: usize| rows[at + 1..].iter().any(|later| later[..keys] == rows[at][..keys]);
+    rows.iter().enumerate().filter(|(at, _)| !again(*at)).map(|(_, row)| *row).collect()
 }
 
 /// The name without a language, which is what cameras write, and the English one.

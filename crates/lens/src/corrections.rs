@@ -31,7 +31,7 @@ impl Radial {
     }
 
     fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let factor = self.factor(x.hypot(y));
+        let factor = self.factor((x * x + y * y).sqrt());
         (x * factor, y * factor)
     }
 }

@@ -2,7 +2,7 @@
 //! the measurements are (manual of lensfun 0.3, "Lens calibration database", `lfLens::InterpolateDistortion`,
 //! `InterpolateTCA`, `InterpolateVignetting`).
 
-/// Coefficients at a focal length in mm from rows of focal length and coefficients. Between the nearest rows on both
+/// Coefficients at a focal length in mm from rows of focal length and coefficients, each focal length once. Between the nearest rows on both
 /// sides runs a cubic Hermite spline whose slopes are those of Catmull and Rom, one-sided at the ends; beyond the last
 /// row its values hold. A coefficient that is `scaled` is interpolated as its product with the focal length: it belongs
 /// to a power of the angle rather than of the radius.
@@ -15,7 +15,6 @@ pub(crate) fn at_focal<const N: usize>(
 ) -> Option<[f64; N]> {
     let mut rows: Vec<&[f64; N]> = rows.iter().filter(|row| row[0].is_finite()).collect();
     rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    rows.dedup_by_key(|row| row[0]);
     if focal.is_nan() {
         return None;
     }
