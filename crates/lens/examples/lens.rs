@@ -26,6 +26,18 @@ fn main() {
             println!("{found:#?}");
         }
     }
+    if let Some(found) = find(&shot) {
+        let corrections = found.corrections((6000, 4000));
+        let start = Instant::now();
+        let mut sum = 0.0;
+        for y in 0..1000 {
+            for x in 0..1000 {
+                let [red, green, blue] = corrections.place(f64::from(x), f64::from(y));
+                sum += red.0 + blue.1 + corrections.gain(green.0, green.1);
+            }
+        }
+        println!("{:.1} ns a place and its gain (sum {sum:.0})", start.elapsed().as_secs_f64() * 1e3);
+    }
     println!(
         "first {:.2} ms, then {:.2} ms",
         times[0],
