@@ -9,10 +9,11 @@ use darkroot_tests::root;
 use crate::files;
 
 /// Which of our crates each crate uses, as `docs/architecture.md` has it. Tests and benches may use any.
-const ARROWS: [(&str, &[&str]); 14] = [
+const ARROWS: [(&str, &[&str]); 15] = [
     ("colour", &[]),
     ("photo", &["colour"]),
     ("sandbox", &[]),
+    ("lens", &[]),
     ("profile", &["colour"]),
     ("raw", &["colour", "photo"]),
     ("encode", &["colour", "photo"]),
@@ -28,7 +29,7 @@ const ARROWS: [(&str, &[&str]); 14] = [
 ];
 
 /// Crates that must stay pure: no files, no clock, no environment (architecture, invariant 7).
-const PURE: [&str; 6] = ["colour", "photo", "profile", "chart", "calibrate", "develop"];
+const PURE: [&str; 7] = ["colour", "photo", "lens", "profile", "chart", "calibrate", "develop"];
 
 fn metadata() -> serde_json::Value {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
