@@ -85,6 +85,7 @@ pub use chart_camera::chart_camera;
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};
 
+mod lens;
 mod shown;
 pub use shown::{json_lines, lines, quoted, shown};
 

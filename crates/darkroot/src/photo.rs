@@ -16,11 +16,13 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use darkroot_develop::{Analysis, Balance, CameraMatrix, Plan, Whites};
+use darkroot_develop::{Analysis, Balance, CameraMatrix, Lens, Plan, Recipe, Whites};
 use darkroot_photo::{Capture, Layout};
+use darkroot_profile::Profile;
 use darkroot_raw::{Decoder, Limits};
 
 use crate::estimate::Estimated;
+use crate::lens;
 use crate::settings::{Engine, ProfileChoice, Settings, SettingsError};
 use crate::store::{ChosenProfile, ProfileStore};
 
@@ -148,7 +150,26 @@ impl Photo {
     ) -> Result<Plan, PlanError> {
         let chosen = self.profile(store, settings)?;
         let recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
-        Ok(darkroot_develop::plan(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), &recipe)?)
+        Ok(self.plan_with(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), recipe)?)
+    }
+
+    /// As [`Photo::plan`], where the profile and the recipe are known already; what the metadata tell of the lens is looked
+    /// up where the recipe asks for it.
+    ///
+    /// # Errors
+    /// A photograph that cannot be developed like that.
+    pub(crate) fn plan_with(
+        &self,
+        analysis: &Analysis,
+        profile: Option<&Profile>,
+        mut recipe: Recipe,
+    ) -> Result<Plan, darkroot_develop::Error> {
+        let asked = recipe.geometry.lens == Lens::Lensfun && !self.capture.rendered;
+        let (known, note) = asked.then(|| lens::known(&self.capture)).flatten().unzip();
+        recipe.geometry.known = known.flatten();
+        let mut plan = darkroot_develop::plan(analysis, profile, &recipe)?;
+        plan.notes.extend(note);
+        Ok(plan)
     }
 
     /// The profile that gives the colours, with the place it is from: where the store has none for the camera, what its

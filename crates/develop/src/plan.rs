@@ -119,6 +119,9 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let denoiser = denoiser(analysis, recipe.denoise, measuring, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
     notes.extend(laid.lens_note(capture));
+    let is_uneven = analysis.light().is_corrected()
+        || !capture.picture_corrections.is_empty()
+        || laid.vignetting.is_some();
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
@@ -144,7 +147,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
             _ if camera_output => Treatment::Keep,
             // A measurement must not contain what was guessed.
             Highlights::Rebuild if curve.is_none() => Treatment::Keep,
-            wanted => treatment(analysis, wanted, multipliers),
+            wanted => treatment(analysis, wanted, multipliers, is_uneven),
         },
         model: (!camera_output).then(|| {
             let to_scene = RgbSpace::REC2020.from_xyz_under(white::D50);
@@ -266,7 +269,7 @@ fn gain(
 }
 
 /// What becomes of clipped samples of this capture.
-fn treatment(analysis: &Analysis, wanted: Highlights, multipliers: [f32; 3]) -> Treatment {
+fn treatment(analysis: &Analysis, wanted: Highlights, multipliers: [f32; 3], uneven: bool) -> Treatment {
     if wanted == Highlights::Keep {
         return Treatment::Keep;
     }
@@ -275,6 +278,5 @@ fn treatment(analysis: &Analysis, wanted: Highlights, multipliers: [f32; 3]) -> 
     if wanted == Highlights::Clip {
         return Treatment::Clip { limit: limits.iter().fold(f32::MAX, |a, &b| a.min(b)) };
     }
-    let uneven = analysis.light().is_corrected() || !analysis.capture().picture_corrections.is_empty();
     Treatment::Rebuild(Rebuild { limits, colours: analysis.clipped_colours(multipliers), uneven })
 }

@@ -8,7 +8,7 @@ use crate::demosaic::reduce::{self, Reduction};
 use crate::demosaic::{self, Method, debias};
 use crate::denoise::{self, Coarse, Denoiser};
 use crate::finish::Finish;
-use crate::geometry::{Warp, resample};
+use crate::geometry::{Warp, brighten, resample};
 use crate::grid::Grid;
 use crate::highlights::{self, Treatment};
 use crate::in_turn::in_turn;
@@ -288,6 +288,10 @@ impl<'a> Render<'a> {
             let inside = |v: isize, start: usize| (v - start as isize).max(0) as usize + (bin - 1) / 2;
             let at = (inside(x, area.x), inside(y, area.y));
             corrections::picture(camera, &plan.picture_corrections, at, bin, area.size());
+        }
+        if let Some((lens, middle)) = &plan.laid.vignetting {
+            let from_middle = |v: isize, middle: f64| v as f64 + 0.5 * bin as f64 - middle;
+            brighten(camera, lens, [from_middle(x, middle[0]), from_middle(y, middle[1])], bin);
         }
     }
 }

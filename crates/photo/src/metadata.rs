@@ -116,6 +116,8 @@ pub mod tag {
     pub const DATE_TIME_ORIGINAL: u16 = 0x9003;
     /// Exif: colour space of the picture (1 = sRGB, 65535 = other).
     pub const COLOUR_SPACE: u16 = 0xa001;
+    /// Exif: distance of the subject, m.
+    pub const SUBJECT_DISTANCE: u16 = 0x9206;
     /// Exif: focal length, mm.
     pub const FOCAL_LENGTH: u16 = 0x920a;
     /// Exif: lens specification.

@@ -1,6 +1,7 @@
 //! Where things stand in a picture that was cropped, turned, straightened, freed of its lens or made smaller.
 
 use darkroot_develop::{Cancel, Crop, Flip, Geometry, Lens, Recipe, Resize, Scale, Turn, View};
+use darkroot_lens::Corrections;
 use darkroot_photo::correction::{Projection, Warp};
 use darkroot_photo::{Capture, Correction, Layout, Orientation, Picture, Rect, Size};
 use darkroot_simulate::camera::filters;
@@ -127,6 +128,60 @@ fn a_fisheye_is_straightened() {
         let f = (k0 * a + k1 * a.powi(3) + k2 * a.powi(5) + k3 * a.powi(7)) / r;
         [150.0 + reach * f * dx, 100.0 + reach * f * dy]
     });
+}
+
+#[test]
+fn what_lensfun_knows_of_the_lens_is_undone() {
+    let shot = darkroot_lens::Shot {
+        lens_model: Some("EF-S18-55mm f/3.5-5.6 IS"),
+        aperture: Some(3.5),
+        ..darkroot_lens::Shot::new("Canon", "Canon EOS 550D", 18.0)
+    };
+    let known = darkroot_lens::find(&shot).unwrap().corrections((SIZE.width, SIZE.height));
+    assert!(known.has_distortion() && known.has_tca() && known.has_vignetting());
+    // As this lens draws the waves: darker towards the corners.
+    let dark = capture(|x, y| {
+        let gain = known.gain(x - 150.0, y - 100.0);
+        waves(x, y).map(|v| v / gain)
+    });
+    let asked = Geometry { lens: Lens::Lensfun, known: Some(known), ..Geometry::default() };
+    // All of the picture comes from the frame, and it is as large as that allows: about the middle some zoom fits all.
+    let place = |known: &Corrections, zoom: f64, c: usize, x: f64, y: f64| {
+        let (u, v) = known.place(zoom * (x - 150.0), zoom * (y - 100.0))[c];
+        [150.0 + u, 100.0 + v]
+    };
+    let zoom_of = |known: &Corrections| {
+        let border = (0..=300).flat_map(|i| {
+            let along = f64::from(i);
+            [[along, 0.0], [along, 200.0], [0.0, along / 1.5], [300.0, along / 1.5]]
+        });
+        let whole = |zoom: f64| {
+            border.clone().all(|[x, y]| {
+                (0..3).all(|c| {
+                    let [u, v] = place(known, zoom, c, x, y);
+                    (0.0..=300.0).contains(&u) && (0.0..=200.0).contains(&v)
+                })
+            })
+        };
+        (0..10_000).map(|i| 1.5 - f64::from(i) * 1e-4).find(|&zoom| whole(zoom)).unwrap()
+    };
+    let zoom = zoom_of(&known);
+    assert!(zoom < 1.0, "{zoom}");
+    let picture = developed(&dark, Crop::Default, asked);
+    assert_eq!(picture.size, SIZE);
+    shows(&picture, "lensfun", |c, x, y| place(&known, zoom, c, x, y));
+    // Parts of it can be left.
+    let kept = Geometry { keep_vignetting: true, keep_fringes: true, ..asked };
+    let (green, plain) = (known.without_tca(), developed(&capture(waves), Crop::Default, kept));
+    let zoom = zoom_of(&green);
+    shows(&plain, "green", |c, x, y| place(&green, zoom, c, x, y));
+    // The file's own correction goes first.
+    let mut with_own = dark;
+    let planes = vec![[0.97, 0.03, 0.0, 0.0, 0.0, 0.0]];
+    let own = Warp { projection: Projection::Rectilinear, planes, centre: (0.5, 0.5) };
+    with_own.picture_corrections = vec![Correction::Warp(own)];
+    let file = Geometry { lens: Lens::File, ..Geometry::default() };
+    assert!(developed(&with_own, Crop::Default, asked) == developed(&with_own, Crop::Default, file));
 }
 
 #[test]

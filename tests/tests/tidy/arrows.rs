@@ -19,13 +19,13 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("encode", &["colour", "photo"]),
     ("chart", &["colour", "photo"]),
     ("simulate", &["colour", "photo"]),
-    ("develop", &["colour", "photo", "profile"]),
+    ("develop", &["colour", "lens", "photo", "profile"]),
     ("calibrate", &["chart", "colour", "photo", "profile"]),
-    ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "photo", "profile", "raw"]),
+    ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "lens", "photo", "profile", "raw"]),
     ("batch", &["colour", "darkroot", "develop", "encode", "photo", "profile", "raw", "sandbox"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
     ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw", "sandbox"]),
-    ("tests", &["chart", "colour", "darkroot", "develop", "photo", "profile", "simulate"]),
+    ("tests", &["chart", "colour", "darkroot", "develop", "lens", "photo", "profile", "simulate"]),
 ];
 
 /// Crates that must stay pure: no files, no clock, no environment (architecture, invariant 7).

@@ -250,7 +250,8 @@ fn plan(
 ) -> Result<(Plan, Report), Error> {
     let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
     let profile = chosen.as_ref().map(|c| c.profile.as_ref());
-    let plan = darkroot_develop::plan(&photo.analyse_as_asked(), profile, recipe)
+    let plan = photo
+        .plan_with(&photo.analyse_as_asked(), profile, *recipe)
         .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();

@@ -18,9 +18,10 @@ const FLIPS: [Word<Flip>; 3] = [
     word("horizontal", Flip::Horizontal, "Left becomes right"),
     word("vertical", Flip::Vertical, "Top becomes bottom"),
 ];
-const LENSES: [Word<Lens>; 3] = [
+const LENSES: [Word<Lens>; 4] = [
     word(AUTO, Lens::Auto, "What the file carries; in the linear look and in camera RGB none"),
     word("file", Lens::File, "What the file carries"),
+    word("lensfun", Lens::Lensfun, "What the file carries, else what lensfun's database has of the lens"),
     word("off", Lens::Off, "None"),
 ];
 
@@ -88,9 +89,35 @@ pub(super) const LENS: Setting = Setting {
     default: AUTO,
     group: Group::Picture,
     placeholder: "",
-    help: "Which correction of the lens's distortion and lateral chromatic aberration is applied",
+    help: "Which correction of the lens is applied: distortion, lateral chromatic aberration and, from lensfun, vignetting",
     changes: Changes::Picture,
     set: |to, text| put(&mut to.recipe.geometry.lens, one_of(&LENSES, text)),
+};
+
+pub(super) const VIGNETTING: Setting = Setting {
+    name: "vignetting",
+    alias: None,
+    noun: "switch",
+    kind: Kind::Switch,
+    default: "true",
+    group: Group::Picture,
+    placeholder: "BOOL",
+    help: "Whether light that the lens lost towards the edges is made good, with --lens lensfun",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.recipe.geometry.keep_vignetting, one_of(&SWITCH, text).map(|on| !on)),
+};
+
+pub(super) const FRINGES: Setting = Setting {
+    name: "ca",
+    alias: None,
+    noun: "switch",
+    kind: Kind::Switch,
+    default: "true",
+    group: Group::Picture,
+    placeholder: "BOOL",
+    help: "Whether lateral chromatic aberration is corrected with the rest of the lens",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.recipe.geometry.keep_fringes, one_of(&SWITCH, text).map(|on| !on)),
 };
 
 pub(super) const CROP: Setting = Setting {

@@ -3,7 +3,9 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
-use super::geometry::{CROP, ENLARGE, FLIP, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN};
+use super::geometry::{
+    CROP, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
+};
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, balance, light, number, one_of, profile, space};
 use super::words::{
@@ -17,7 +19,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 29] = [
+pub const SETTINGS: [Setting; 31] = [
     Setting {
         name: "format",
         alias: None,
@@ -227,6 +229,8 @@ pub const SETTINGS: [Setting; 29] = [
     STRAIGHTEN,
     PERSPECTIVE,
     LENS,
+    VIGNETTING,
+    FRINGES,
     CROP,
     RESIZE,
     ENLARGE,

@@ -1,5 +1,7 @@
 //! What a person asks of the picture's frame.
 
+use darkroot_lens::Corrections;
+
 /// Which part of the frame is developed, in the upright picture. What lies outside of a picture that was straightened is
 /// never shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -39,8 +41,14 @@ pub struct Geometry {
     /// Corners of what shall become a rectangle: top left, top right, bottom right, bottom left, each column and row in
     /// pixels of the upright picture, before it is straightened.
     pub perspective: Option<[[f64; 2]; 4]>,
-    /// The lens's distortion and lateral chromatic aberration.
+    /// What is done about the lens.
     pub lens: Lens,
+    /// What a database knows of the lens, for [`Lens::Lensfun`]. Whoever knows the photograph's metadata sets it.
+    pub known: Option<Corrections>,
+    /// Whether the lens's loss of light towards the edges is made good, as `known` has it.
+    pub keep_vignetting: bool,
+    /// Whether red and blue stay where the lens put them.
+    pub keep_fringes: bool,
     /// Size of the picture.
     pub resize: Resize,
     /// Whether `resize` may make it larger than it is.
@@ -81,6 +89,8 @@ pub enum Lens {
     Auto,
     /// What the file carries.
     File,
+    /// What the file carries, else what the lensfun database knows.
+    Lensfun,
     /// None.
     Off,
 }

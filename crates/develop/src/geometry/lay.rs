@@ -1,11 +1,12 @@
 //! From what was asked to a rectangle of the frame, or to a map into it.
 
 use darkroot_colour::Matrix3;
+use darkroot_lens::Corrections;
 use darkroot_photo::{Capture, Correction, Orientation, Rect, Size};
 
 use super::homography::{from_square, moved, place, scaled, turned};
-use super::lens::LensWarp;
-use super::warp::Warp;
+use super::lens::{LensWarp, middle};
+use super::warp::{Source, Warp};
 use super::{Crop, Flip, Geometry, Lens, Resize, Turn};
 use crate::error::{Error, GeometryFault};
 
@@ -23,18 +24,21 @@ pub(crate) struct Laid {
     pub(crate) orientation: Orientation,
     /// Where its pixels come from, where that is between pixels.
     pub(crate) warp: Option<Warp>,
+    /// What is known of the light that the lens lost, and the middle of its picture, in columns and rows of the frame.
+    pub(crate) vignetting: Option<(Corrections, [f64; 2])>,
 }
 
 impl Laid {
     /// What became of the correction of the lens that the file carries.
     pub(crate) fn lens_note(&self, capture: &Capture) -> Option<String> {
         let is_warp = |correction: &Correction| matches!(correction, Correction::Warp(_));
-        let corrected = self.warp.as_ref().is_some_and(Warp::corrects_a_lens);
-        if corrected {
-            return Some("the lens's distortion is corrected as the file says".to_owned());
-        }
         let mut all = capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
-        all.any(is_warp).then(|| "the file's correction of the lens's distortion is not applied".to_owned())
+        let what = match self.warp.as_ref().and_then(Warp::corrects_as) {
+            Some(Source::File) => "the lens's distortion is corrected as the file says",
+            _ if !all.any(is_warp) => return None,
+            _ => "the file's correction of the lens's distortion is not applied",
+        };
+        Some(what.to_owned())
     }
 
     /// The pixel of the frame at a pixel of the picture.
@@ -62,11 +66,20 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
     let shown = if crop == Crop::Active { capture.active_area } else { capture.default_crop };
     let orientation = oriented(capture.orientation, asked.turn, asked.flip);
     let canvas = orientation.applied_to(shown.size());
-    let lens = match asked.lens {
+    let area = capture.active_area;
+    let in_area = |rect: Rect| Rect { x: rect.x - area.x, y: rect.y - area.y, ..rect };
+    let of_file = match asked.lens {
         Lens::Off => Vec::new(),
         Lens::Auto if measuring => Vec::new(),
-        Lens::Auto | Lens::File => LensWarp::of(capture),
+        Lens::Auto | Lens::File | Lens::Lensfun => LensWarp::of_file(capture, asked.keep_fringes),
     };
+    let known = asked.known.filter(|_| asked.lens == Lens::Lensfun && of_file.is_empty());
+    let known = known.map(|known| if asked.keep_fringes { known.without_tca() } else { known });
+    let vignetting = known.filter(|known| known.has_vignetting() && !asked.keep_vignetting);
+    let vignetting = vignetting.map(|known| (known, middle(capture.default_crop)));
+    let of_lens = known.and_then(|known| LensWarp::known(known, in_area(capture.default_crop)));
+    let zoom = of_lens.as_ref().map_or(1.0, |lens| zoom(lens, in_area(shown), area.size()));
+    let lens = [of_file, of_lens.into_iter().collect()].concat();
     let straight = asked.straighten == 0.0 && asked.perspective.is_none();
     let to_canvas = to_canvas(canvas, asked)?;
     let part = part(crop, canvas, &to_canvas, straight)?;
@@ -75,18 +88,53 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
     let whole = (size.width as f64, size.height as f64) == (width, height);
     if straight && whole && lens.is_empty() {
         let upright = Rect { x: part.x as usize, y: part.y as usize, width: size.width, height: size.height };
-        return Ok(Laid { size, crop: in_frame(upright, shown, orientation), orientation, warp: None });
+        return Ok(Laid {
+            size,
+            crop: in_frame(upright, shown, orientation),
+            orientation,
+            warp: None,
+            vignetting,
+        });
     }
     let (across, down) = (width / size.width as f64, height / size.height as f64);
-    let area = capture.active_area;
-    let origin = moved((shown.x - area.x) as f64, (shown.y - area.y) as f64);
-    let to_frame = origin
+    let in_area = in_area(shown);
+    let [x, y] = middle(in_area);
+    let to_frame = moved(x, y)
+        * scaled(zoom, zoom)
+        * moved(in_area.x as f64 - x, in_area.y as f64 - y)
         * unturned(orientation, canvas, shown.size())
         * to_canvas
         * moved(part.x, part.y)
         * scaled(across, down);
-    let warp = Warp::new(to_frame, lens, area.size(), across.max(down));
-    Ok(Laid { size, crop: shown, orientation, warp: Some(warp) })
+    let warp = Warp::new(to_frame, lens, area.size(), zoom * across.max(down));
+    Ok(Laid { size, crop: shown, orientation, warp: Some(warp), vignetting })
+}
+
+/// By what a corrected picture must be multiplied about its middle so that all of it comes from the frame, and most of the
+/// frame is in it: found by halving.
+fn zoom(lens: &LensWarp, shown: Rect, area: Size) -> f64 {
+    const STEPS: usize = 32;
+    let [x, y] = middle(shown);
+    let border = (0..4 * STEPS).map(|i| {
+        let along = (i % STEPS) as f64 / STEPS as f64;
+        let (u, v) = [(along, 0.0), (1.0, along), (1.0 - along, 1.0), (0.0, 1.0 - along)][i / STEPS];
+        [(u - 0.5) * shown.width as f64, (v - 0.5) * shown.height as f64]
+    });
+    let border: Vec<[f64; 2]> = border.collect();
+    let is_whole = |zoom: f64| {
+        border.iter().all(|[u, v]| {
+            (0..3).all(|channel| {
+                let [x, y] = lens.place(channel, [x + zoom * u, y + zoom * v]);
+                (0.0..=area.width as f64).contains(&x) && (0.0..=area.height as f64).contains(&y)
+            })
+        })
+    };
+    let (mut whole, mut beyond) = (0.5, 1.5);
+    for _ in 0..30 {
+        let between = 0.5 * (whole + beyond);
+        if is_whole(between) { whole = between } else { beyond = between }
+    }
+    whole
 }
 
 /// What stands upright after one orientation, a turn and a mirroring, as one.

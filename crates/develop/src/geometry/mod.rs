@@ -11,9 +11,11 @@ mod lay;
 mod lens;
 mod resample;
 mod taps;
+mod vignetting;
 mod warp;
 
 pub use asked::{Crop, Flip, Geometry, Lens, Resize, Turn};
 pub(crate) use lay::{Laid, lay};
 pub(crate) use resample::resample;
+pub(crate) use vignetting::brighten;
 pub(crate) use warp::Warp;

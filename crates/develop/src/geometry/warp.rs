@@ -23,6 +23,13 @@ pub(crate) struct Warp {
     pub(super) taps: Taps,
 }
 
+/// Where a correction of a lens is from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Source {
+    File,
+    Lensfun,
+}
+
 /// Where the pixels of a part of a picture come from, at a scale.
 #[derive(Debug)]
 pub(crate) struct Places {
@@ -44,8 +51,12 @@ impl Warp {
         ((of_frame as f64 / self.reduction.max(1.0)) as usize).max(1)
     }
 
-    pub(super) fn corrects_a_lens(&self) -> bool {
-        !self.lens.is_empty()
+    /// Where its correction of a lens is from.
+    pub(super) fn corrects_as(&self) -> Option<Source> {
+        self.lens.first().map(|lens| match lens {
+            LensWarp::Dng { .. } => Source::File,
+            LensWarp::Measured { .. } => Source::Lensfun,
+        })
     }
 
     /// Where a colour of a place of the picture lies in the active area, in pixels from its corner.
