@@ -11,6 +11,7 @@ mod engines;
 mod evaluate;
 mod export;
 mod formats;
+mod geometry;
 mod help;
 mod hostile;
 mod inspect;
