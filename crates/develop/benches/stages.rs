@@ -13,7 +13,7 @@ use darkroot_develop::demosaic::Method;
 use darkroot_develop::gamut::Primaries;
 use darkroot_develop::highlights::{Rebuild, Treatment};
 use darkroot_develop::level::Levels;
-use darkroot_develop::tone::Curve;
+use darkroot_develop::tone::{Curve, Tones};
 use darkroot_develop::transfer::Encoder;
 use darkroot_develop::{
     Demosaic, Look, balance, correct, demosaic, exposure, gamut, highlights, tone, transfer,
@@ -84,9 +84,9 @@ fn stages(c: &mut Criterion) {
     group.bench_function("exposure", |b| {
         b.iter_batched(planes, |p| exposure::expose(p, 1.5), BatchSize::LargeInput);
     });
-    if let Some(curve) = Curve::of(Look::Neutral) {
+    if let Some(curve) = Curve::of(Look::Neutral, &Tones::default()) {
         group.bench_function("tone", |b| {
-            b.iter_batched(planes, |p| tone::tone(p, curve), BatchSize::LargeInput);
+            b.iter_batched(planes, |p| tone::tone(p, &curve), BatchSize::LargeInput);
         });
     }
     let primaries = Primaries::new(&RgbSpace::SRGB);

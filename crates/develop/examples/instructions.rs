@@ -11,7 +11,7 @@ use darkroot_develop::demosaic::Method;
 use darkroot_develop::gamut::Primaries;
 use darkroot_develop::level::Levels;
 use darkroot_develop::sharpen::Sharpener;
-use darkroot_develop::tone::Curve;
+use darkroot_develop::tone::{Curve, Tones};
 use darkroot_develop::transfer::Encoder;
 use darkroot_develop::{Demosaic, Look, balance, correct, demosaic, gamut, sharpen, tone, transfer};
 use darkroot_photo::{Counts, Display, Rgb, Scene, Toned};
@@ -60,11 +60,11 @@ fn correction(order: Order) -> Ready {
 }
 
 fn tone_and_gamut() -> Option<Ready> {
-    let curve = Curve::of(Look::Neutral)?;
+    let curve = Curve::of(Look::Neutral, &Tones::default())?;
     let primaries = Primaries::new(&RgbSpace::SRGB);
     let mut picture = Some(planes::<Scene>());
     Some(Box::new(move || {
-        let toned: Option<Rgb<Toned>> = picture.take().map(|p| tone::tone(p, curve));
+        let toned: Option<Rgb<Toned>> = picture.take().map(|p| tone::tone(p, &curve));
         picture = toned.map(|p| gamut::fit(p, &primaries).into_space());
     }))
 }

@@ -70,7 +70,7 @@ fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     };
     let scene = correct::correct(camera, model);
     let scene = exposure::expose(scene, plan.gain);
-    match plan.curve {
+    match &plan.curve {
         Some(curve) => gamut::fit(tone::tone(scene, curve), &plan.primaries),
         None => gamut::convert(scene, &plan.primaries),
     }

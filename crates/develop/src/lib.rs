@@ -19,7 +19,7 @@
 pub mod recipe;
 pub use recipe::{
     Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Geometry, Highlights, HotPixels, Lens, Look,
-    Output, OutputSpace, Recipe, Resize, Turn,
+    Output, OutputSpace, Recipe, Resize, Tones, Turn,
 };
 
 pub mod error;

@@ -101,7 +101,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         Method::of(layout, recipe.demosaic).ok_or_else(|| Error::Filters { filters: filters(layout) })?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
     // What the camera rendered for display has its look already.
-    let curve = Curve::of(recipe.look).filter(|_| !capture.rendered);
+    let curve = Curve::of(recipe.look, &recipe.tones).filter(|_| !capture.rendered);
     let measuring = curve.is_none() || camera_output;
     let laid = lay(capture, recipe.crop, &recipe.geometry, measuring)?;
     let mut notes = Vec::new();

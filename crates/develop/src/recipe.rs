@@ -3,6 +3,7 @@
 use darkroot_colour::RgbSpace;
 
 pub use crate::geometry::{Crop, Flip, Geometry, Lens, Resize, Turn};
+pub use crate::tone::Tones;
 
 /// How a photograph shall be developed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,6 +25,8 @@ pub struct Recipe {
     pub exposure: Exposure,
     /// Rendering from scene to display.
     pub look: Look,
+    /// What is changed about it.
+    pub tones: Tones,
     /// Which part of the frame.
     pub crop: Crop,
     /// How that lies in the picture, and how large it gets.

@@ -14,17 +14,31 @@ use darkroot_photo::{Rgb, Scene, Toned};
 
 use crate::Look;
 use crate::cones::{self, Rows, along_hue, from_rgb, greater, lesser, rows};
+use adjust::Table;
 
-/// The curve of a look.
-#[derive(Debug, Clone, Copy, PartialEq)]
+mod adjust;
+pub use adjust::Tones;
+
+/// The curve of a look, with what a person changed about it.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
+    base: Base,
+    /// All of the curve, where brightness was changed.
+    table: Option<Table>,
+    /// Factor on the chroma that the curve gives.
+    chroma: f32,
+    /// How much more chroma pale colours get.
+    vibrance: f32,
+    /// Rec. 2020 to responses.
+    to_cones: Rows,
+}
+
+/// A log-logistic curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Base {
     /// Quarters of the exponent p: 5, 7 or 8.
     quarters: u8,
     k: f32,
-    /// Factor on the chroma that the curve gives.
-    chroma: f32,
-    /// Rec. 2020 to responses.
-    to_cones: Rows,
 }
 
 /// Scene light of a grey card as cameras meter it: 12.7 % of the clipping level (ISO 12232).
@@ -35,14 +49,18 @@ const BRIGHTEST: f32 = 1e6;
 const DARKEST: f32 = 1e-6;
 
 impl Curve {
-    /// The curve of a look; `None` for the linear one.
-    pub fn of(look: Look) -> Option<Self> {
+    /// The curve of a look, changed; `None` for the linear one.
+    pub fn of(look: Look, tones: &Tones) -> Option<Self> {
         // A metered grey is shown so that pictures are as bright as those of cameras (tests/compare/brightness.py).
         let curve = |quarters: u8, shown_grey: f64, chroma: f32| {
             // Solved for f(METERED_GREY) = shown_grey.
             let t = METERED_GREY.powf(f64::from(quarters) / 4.0);
             let k = t * (1.0 - shown_grey) / (shown_grey - t);
-            Self { quarters, k: k as f32, chroma, to_cones: rows(&from_rgb(&RgbSpace::REC2020)) }
+            let base = Base { quarters, k: k as f32 };
+            let table =
+                (!tones.keeps_curve()).then(|| Table::of(tones, METERED_GREY, |light| base.at(light)));
+            let to_cones = rows(&from_rgb(&RgbSpace::REC2020));
+            Self { base, table, chroma: chroma * tones.saturation, vibrance: tones.vibrance, to_cones }
         };
         match look {
             Look::Neutral => Some(curve(7, 0.28, 1.0)),
@@ -53,8 +71,44 @@ impl Curve {
     }
 
     /// Display light of scene light; 0 for negative, never more than 1.
+    pub fn at(&self, scene: f32) -> f32 {
+        match &self.table {
+            None => self.base.at(scene),
+            Some(table) => table.at(lesser(greater(scene, 0.0), BRIGHTEST)),
+        }
+    }
+
+    /// Responses to a colour of the scene, toned by `at`.
     #[inline(always)]
-    pub fn at(self, scene: f32) -> f32 {
+    fn shown<const VIBRANT: bool>(&self, scene: [f32; 3], at: impl Fn(f32) -> f32) -> [f32; 3] {
+        let scene = scene.map(|v| lesser(v, BRIGHTEST));
+        // Light below 0, of colours beyond Rec. 2020 and of noise, ends where light does; responses to it say more.
+        let high = greater(greater(greater(scene[0], scene[1]), scene[2]), 0.0);
+        let low = greater(lesser(lesser(scene[0], scene[1]), scene[2]), 0.0);
+        let (to_high, to_low) = (at(high), at(low));
+        // Grey has no span: it becomes `to_low`.
+        let span = high - low;
+        let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
+        let seen = cones::times(self.to_cones, scene).map(|v| greater(v, 0.0));
+        let grey = greater(cones::grey(seen), DARKEST);
+        let shown = greater(to_low + (grey - low) * slope, 0.0);
+        // Where the curve is steep, chroma grows, half as much as channels apart would let it: less so that of pure
+        // colours, which have nowhere to go.
+        let (more, spread) = (slope * grey - shown, 0.5 * low);
+        let chroma = if more > 0.0 { shown * grey + more * spread } else { slope * grey * grey };
+        let mut factor = self.chroma;
+        if VIBRANT {
+            let pale = low / greater(high, f32::MIN_POSITIVE);
+            factor *= 1.0 + self.vibrance * pale * pale;
+        }
+        let chroma = factor * chroma / greater(shown * grey, f32::MIN_POSITIVE);
+        along_hue(seen, grey, chroma).map(|distance| shown + shown * distance)
+    }
+}
+
+impl Base {
+    #[inline(always)]
+    fn at(self, scene: f32) -> f32 {
         let x = lesser(greater(scene, 0.0), BRIGHTEST);
         let power = match self.quarters {
             5 => x * x.sqrt().sqrt(),
@@ -66,38 +120,27 @@ impl Curve {
         };
         lesser((1.0 + self.k) * power / (power + self.k), 1.0)
     }
-
-    /// Responses to a colour of the scene, toned.
-    #[inline(always)]
-    fn shown(self, scene: [f32; 3]) -> [f32; 3] {
-        let scene = scene.map(|v| lesser(v, BRIGHTEST));
-        // Light below 0, of colours beyond Rec. 2020 and of noise, ends where light does; responses to it say more.
-        let high = greater(greater(greater(scene[0], scene[1]), scene[2]), 0.0);
-        let low = greater(lesser(lesser(scene[0], scene[1]), scene[2]), 0.0);
-        let (to_high, to_low) = (self.at(high), self.at(low));
-        // Grey has no span: it becomes `to_low`.
-        let span = high - low;
-        let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
-        let seen = cones::times(self.to_cones, scene).map(|v| greater(v, 0.0));
-        let grey = greater(cones::grey(seen), DARKEST);
-        let shown = greater(to_low + (grey - low) * slope, 0.0);
-        // Where the curve is steep, chroma grows, half as much as channels apart would let it: less so that of pure
-        // colours, which have nowhere to go.
-        let (more, spread) = (slope * grey - shown, 0.5 * low);
-        let chroma = if more > 0.0 { shown * grey + more * spread } else { slope * grey * grey };
-        let chroma = self.chroma * chroma / greater(shown * grey, f32::MIN_POSITIVE);
-        along_hue(seen, grey, chroma).map(|distance| shown + shown * distance)
-    }
 }
 
 /// Applies a look's curve.
-pub fn tone(mut picture: Rgb<Scene>, curve: Curve) -> Rgb<Toned> {
+pub fn tone(picture: Rgb<Scene>, curve: &Curve) -> Rgb<Toned> {
+    let base = |light| curve.base.at(light);
+    match (&curve.table, curve.vibrance == 0.0) {
+        (None, true) => toned::<false>(picture, curve, base),
+        (None, false) => toned::<true>(picture, curve, base),
+        (Some(table), true) => toned::<false>(picture, curve, |light| table.at(light)),
+        (Some(table), false) => toned::<true>(picture, curve, |light| table.at(light)),
+    }
+}
+
+#[inline(always)]
+fn toned<const VIBRANT: bool>(mut picture: Rgb<Scene>, curve: &Curve, at: impl Fn(f32) -> f32) -> Rgb<Toned> {
     let [r, g, b] = picture.planes_mut();
     vectorised(
         #[inline(always)]
         || {
             for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                [*r, *g, *b] = curve.shown([*r, *g, *b]);
+                [*r, *g, *b] = curve.shown::<VIBRANT>([*r, *g, *b], &at);
             }
         },
     );

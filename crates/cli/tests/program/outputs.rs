@@ -269,3 +269,22 @@ fn the_same_file_developed_twice_is_the_same_to_the_byte() {
         assert!(desk.read(&one) == desk.read(&two), "{ending}");
     }
 }
+
+#[test]
+fn tones_of_a_look_are_changed_as_asked() {
+    let desk = Desk::with_dng();
+    let mean = |options: &[&str]| {
+        desk.develop(&[&["a.dng", "-o", "o.png", "--overwrite"], options].concat());
+        let picture = image::open(desk.path("o.png")).unwrap().to_rgb8();
+        let channel = |c: usize| picture.pixels().map(|p| f64::from(p[c])).sum::<f64>();
+        let spread =
+            picture.pixels().map(|p| f64::from(p.0.iter().max().unwrap() - p.0.iter().min().unwrap()));
+        (channel(0) + channel(1) + channel(2), spread.sum::<f64>())
+    };
+    let (light, spread) = mean(&[]);
+    assert!(mean(&["--shadows", "1"]).0 > 1.05 * light);
+    assert!(mean(&["--highlights-tone", "-1.5"]).0 < 0.98 * light);
+    assert!(mean(&["--saturation", "1.5"]).1 > 1.2 * spread);
+    assert!(mean(&["--saturation", "0"]).1 < 0.02 * spread);
+    assert!(mean(&["--vibrance", "1"]).1 > 1.05 * spread);
+}

@@ -7,7 +7,7 @@ use super::*;
 #[test]
 fn wrong_usage_is_exit_code_2_and_says_what_is_right() {
     let desk = Desk::with_dng();
-    let wrong: [(&[&str], &str); 20] = [
+    let wrong: [(&[&str], &str); 22] = [
         (&["develop"], "FILE"),
         (&["inspect"], "FILE"),
         (&["enlarge"], "enlarge"),
@@ -20,6 +20,8 @@ fn wrong_usage_is_exit_code_2_and_says_what_is_right() {
         (&["develop", "a.dng", "--quality", "101"], "1..=100"),
         (&["develop", "a.dng", "--space", "cmyk"], "adobe-rgb"),
         (&["develop", "a.dng", "--look", "film"], "neutral"),
+        (&["develop", "a.dng", "--contrast", "2"], "-1"),
+        (&["develop", "a.dng", "--look", "linear", "--shadows", "1", "-o", "a.tif"], "no room for shadows"),
         (&["develop", "a.dng", "--bits", "12"], "16"),
         (&["develop", "a.dng", "--bits", "16"], "only 8"),
         (&["develop", "a.dng", "--format", "gif"], "tiff"),

@@ -6,6 +6,7 @@ pub mod setting;
 pub use setting::{Changes, Group, Kind, Setting, Word};
 
 mod geometry;
+mod tones;
 mod words;
 
 pub mod table;
@@ -23,7 +24,7 @@ pub use spaces::{SPACES, space};
 
 use std::path::PathBuf;
 
-use darkroot_develop::{Bits, Look, OutputSpace, Recipe};
+use darkroot_develop::{Bits, Look, OutputSpace, Recipe, Tones};
 use darkroot_encode::Format;
 use darkroot_photo::PictureSpace;
 use darkroot_raw::{Decoder, Limits};
@@ -117,6 +118,12 @@ pub enum SettingsError {
         /// The space.
         space: String,
     },
+    /// Changes of a look on top of the linear one.
+    #[error("numbers proportional to light leave no room for {}: choose another look for that", settings.join(", "))]
+    TonesOnLinear {
+        /// Names of the settings that ask for it.
+        settings: Vec<&'static str>,
+    },
     /// Camera RGB in an integer format.
     #[error("camera RGB is for measurement: write a 32-bit .tif or an .exr file")]
     CameraNeedsFloat,
@@ -165,6 +172,7 @@ impl Settings {
         if camera && (bits != 32 || !matches!(format, Format::Tiff | Format::Exr)) {
             return Err(SettingsError::CameraNeedsFloat);
         }
+        check_tones(&recipe, linear || camera)?;
         if linear && bits == 8 {
             return Err(SettingsError::LinearInEightBits { format: format.name() });
         }
@@ -190,6 +198,23 @@ impl Settings {
         }
         Ok(recipe)
     }
+}
+
+/// Linear light has no look that could be changed.
+fn check_tones(recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
+    let (tones, fixed) = (&recipe.tones, Tones::default());
+    let changed = |v: f32, fixed: f32| (v - fixed).abs() > 0.0;
+    let asks = [
+        ("contrast", changed(tones.contrast, fixed.contrast)),
+        ("shadows", changed(tones.shadows, fixed.shadows)),
+        ("highlights-tone", changed(tones.highlights, fixed.highlights)),
+        ("black", changed(tones.black, fixed.black)),
+        ("white", changed(tones.white, fixed.white)),
+        ("saturation", changed(tones.saturation, fixed.saturation)),
+        ("vibrance", changed(tones.vibrance, fixed.vibrance)),
+    ];
+    let settings: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    if !linear || settings.is_empty() { Ok(()) } else { Err(SettingsError::TonesOnLinear { settings }) }
 }
 
 /// What is about the sensor's light has no meaning for a picture that the camera rendered.
@@ -219,6 +244,7 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
         ("sharpen", recipe.sharpen == fixed.sharpen),
         ("demosaic", recipe.demosaic == fixed.demosaic),
         ("crop", recipe.crop == fixed.crop),
+        ("contrast, saturation and their like", recipe.tones == fixed.tones),
         ("rotate, straighten, lens, resize and their like", recipe.geometry == fixed.geometry),
     ];
     let unheeded: Vec<&str> = heeded.iter().filter(|(_, fits)| !fits).map(|(name, _)| *name).collect();

@@ -8,6 +8,7 @@ use super::geometry::{
 };
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, balance, light, number, one_of, profile, space};
+use super::tones::{BLACK, CONTRAST, HIGHLIGHTS as HIGHLIGHTS_TONE, SATURATION, SHADOWS, VIBRANCE, WHITE};
 use super::words::{
     AUTO, BITS, CHROMA, DECODERS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
 };
@@ -19,7 +20,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 31] = [
+pub const SETTINGS: [Setting; 38] = [
     Setting {
         name: "format",
         alias: None,
@@ -138,6 +139,13 @@ pub const SETTINGS: [Setting; 31] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.look, one_of(&LOOKS, text)),
     },
+    CONTRAST,
+    SHADOWS,
+    HIGHLIGHTS_TONE,
+    BLACK,
+    WHITE,
+    SATURATION,
+    VIBRANCE,
     Setting {
         name: "highlights",
         alias: None,

@@ -7,12 +7,21 @@ const LOOKS: [Look; 3] = [Look::Neutral, Look::Vivid, Look::Flat];
 
 /// Linear sRGB of colours of a scene in linear sRGB, toned.
 fn shown(scene: &[[f64; 3]], look: Look) -> Vec<[f64; 3]> {
+    by_curve(scene, &Curve::of(look, &Tones::default()).unwrap())
+}
+
+/// The same in the neutral look, changed.
+fn shown_with(scene: &[[f64; 3]], tones: &Tones) -> Vec<[f64; 3]> {
+    by_curve(scene, &Curve::of(Look::Neutral, tones).unwrap())
+}
+
+fn by_curve(scene: &[[f64; 3]], curve: &Curve) -> Vec<[f64; 3]> {
     let to_rec2020 = RgbSpace::REC2020.from_xyz_under(white::D65) * RgbSpace::SRGB.to_xyz_under(white::D65);
     let scene: Vec<Vector3> = scene.iter().map(|v| to_rec2020 * Vector3::from(*v)).collect();
     let plane = |c: usize| scene.iter().map(|v| v[c] as f32).collect::<Vec<f32>>();
     let size = Size { width: scene.len(), height: 1 };
     let picture = Rgb::from_planes(size, [plane(0), plane(1), plane(2)]).unwrap();
-    let picture = gamut::fit(tone(picture, Curve::of(look).unwrap()), &Primaries::new(&RgbSpace::SRGB));
+    let picture = gamut::fit(tone(picture, curve), &Primaries::new(&RgbSpace::SRGB));
     (0..size.width).map(|x| picture.at(x, 0).map(f64::from)).collect()
 }
 
@@ -50,7 +59,7 @@ fn stops(colour: [f64; 3], from: f64, to: f64) -> Vec<[f64; 3]> {
 #[test]
 fn every_curve_rises_from_black_to_white() {
     for look in LOOKS {
-        let curve = Curve::of(look).unwrap();
+        let curve = Curve::of(look, &Tones::default()).unwrap();
         let mut previous = curve.at(0.0);
         assert!(previous.abs() < 1e-9, "{look:?}");
         for i in 1..=2000 {
@@ -66,7 +75,7 @@ fn every_curve_rises_from_black_to_white() {
 
 #[test]
 fn contrast_grows_from_flat_to_vivid() {
-    let shadows = |look| Curve::of(look).unwrap().at(0.02);
+    let shadows = |look| Curve::of(look, &Tones::default()).unwrap().at(0.02);
     assert!(shadows(Look::Flat) > shadows(Look::Neutral) && shadows(Look::Neutral) > shadows(Look::Vivid));
 }
 
@@ -147,15 +156,99 @@ fn grey_stays_grey_and_what_is_no_colour_harms_nothing() {
     for look in LOOKS {
         for v in inputs {
             let picture = Rgb::from_planes(Size { width: 1, height: 1 }, v.map(|v| vec![v])).unwrap();
-            let toned = tone(picture, Curve::of(look).unwrap()).at(0, 0);
-            let wanted = Curve::of(look).unwrap().at(lesser(v[0], BRIGHTEST));
+            let toned = tone(picture, &Curve::of(look, &Tones::default()).unwrap()).at(0, 0);
+            let wanted = Curve::of(look, &Tones::default()).unwrap().at(lesser(v[0], BRIGHTEST));
             assert!(toned.iter().all(|t| (t - wanted).abs() < 2e-6), "{look:?} {v:?}: {toned:?}");
         }
         for v in [[f32::INFINITY, 0.0, 0.1], [0.1, f32::NAN, 0.1], [-1.0, f32::MAX, 0.0], [1e-30, 0.0, 1e-20]]
         {
             let picture = Rgb::from_planes(Size { width: 1, height: 1 }, v.map(|v| vec![v])).unwrap();
-            let toned = tone(picture, Curve::of(look).unwrap()).at(0, 0);
+            let toned = tone(picture, &Curve::of(look, &Tones::default()).unwrap()).at(0, 0);
             assert!(toned.iter().all(|t| t.is_finite()), "{look:?} {v:?}: {toned:?}");
+        }
+    }
+}
+
+#[test]
+fn a_changed_curve_rises_from_black_to_white_too() {
+    let extremes = [-2.0f32, 0.0, 2.0];
+    for shadows in extremes {
+        for highlights in extremes {
+            for (contrast, white, black) in
+                [(-1.0, 1.0, -2.0), (1.0, -1.0, 2.0), (1.0, 1.0, 2.0), (-1.0, -1.0, -2.0)]
+            {
+                let tones = Tones { contrast, shadows, highlights, black, white, ..Tones::default() };
+                for look in LOOKS {
+                    let curve = Curve::of(look, &tones).unwrap();
+                    let mut previous = curve.at(0.0);
+                    assert!(previous.abs() < 1e-9);
+                    for i in 1..4000 {
+                        let now = curve.at((f64::from(i) * 0.01 - 22.0).exp2() as f32);
+                        assert!(now >= previous && now <= 1.0, "{look:?} {tones:?} at {i}: {previous} {now}");
+                        previous = now;
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_table_is_the_curve_where_nothing_is_changed_and_zones_move_by_the_stops_asked_for() {
+    for look in LOOKS {
+        let plain = Curve::of(look, &Tones::default()).unwrap();
+        let hardly = Curve::of(look, &Tones { contrast: 1e-9, ..Tones::default() }).unwrap();
+        for i in 0..2000 {
+            let light = (f64::from(i) * 0.015 - 20.0).exp2() as f32;
+            let (one, other) = (plain.at(light), hardly.at(light));
+            assert!((one - other).abs() < 1e-5 + 2e-4 * one, "{look:?} at {light}: {one} {other}");
+        }
+        let at = |stops: f64| (METERED_GREY * stops.exp2()) as f32;
+        for (tones, stops, moved) in [
+            (Tones { contrast: 0.5, ..Tones::default() }, 2.0, 0.5),
+            (Tones { contrast: 0.5, ..Tones::default() }, -2.0, -0.5),
+            (Tones { contrast: 0.5, ..Tones::default() }, 0.0, 0.0),
+            (Tones { shadows: 1.0, ..Tones::default() }, -4.0, 1.0),
+            (Tones { shadows: 1.0, ..Tones::default() }, 1.0, 0.0),
+            (Tones { highlights: -1.0, ..Tones::default() }, 3.5, -1.0),
+            (Tones { highlights: -1.0, ..Tones::default() }, -1.0, 0.0),
+            (Tones { black: 1.0, ..Tones::default() }, -7.5, 1.0),
+            (Tones { white: 0.5, ..Tones::default() }, 3.0, 0.5),
+        ] {
+            let changed = Curve::of(look, &tones).unwrap().at(at(stops));
+            let wanted = plain.at(at(stops + moved));
+            assert!((changed / wanted - 1.0).abs() < 2e-3, "{look:?} {tones:?}: {changed} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn saturation_and_vibrance_keep_hue_and_lightness_and_leave_grey() {
+    let scene: Vec<[f64; 3]> = (0..12)
+        .flat_map(|hue| [0.15, 0.5].map(|share| of_hue(f64::from(hue) * 30.0, share).map(|v| v * 0.15)))
+        .chain([[0.18; 3]])
+        .collect();
+    let plain: Vec<Oklab> = shown_with(&scene, &Tones::default()).into_iter().map(of_srgb).collect();
+    let chroma = |c: &Oklab| c.a.hypot(c.b);
+    for (tones, pale, rich) in [
+        (Tones { saturation: 1.3, ..Tones::default() }, 1.2..1.4, 1.15..1.45),
+        (Tones { saturation: 0.5, ..Tones::default() }, 0.45..0.55, 0.4..0.6),
+        (Tones { vibrance: 0.5, ..Tones::default() }, 1.15..1.5, 1.0..1.25),
+        (Tones { saturation: 0.0, ..Tones::default() }, 0.0..0.01, 0.0..0.01),
+    ] {
+        let changed: Vec<Oklab> = shown_with(&scene, &tones).into_iter().map(of_srgb).collect();
+        for (i, (before, after)) in plain.iter().zip(&changed).enumerate() {
+            if i == 24 {
+                assert!(chroma(after) < 1e-3 && (before.l - after.l).abs() < 1e-4, "{tones:?}: {after:?}");
+                continue;
+            }
+            let ratio = chroma(after) / chroma(before);
+            let range = if i % 2 == 0 { &pale } else { &rich };
+            assert!(range.contains(&ratio), "{tones:?} colour {i}: {ratio}");
+            assert!((before.l - after.l).abs() < 0.02, "{tones:?} colour {i}: {} {}", before.l, after.l);
+            if tones.saturation > 0.0 {
+                assert!(after.hue_difference(*before) < 3.0, "{tones:?} colour {i}");
+            }
         }
     }
 }

@@ -70,7 +70,7 @@ fn a_recipe_says_where_each_value_is_from() {
     let report: Value = serde_json::from_str(&desk.run(&["recipe", "--json", "roll/a.dng"]).out).unwrap();
     assert_eq!(report["file"], "roll/a.dng");
     let settings = report["settings"].as_object().unwrap();
-    assert_eq!(settings.len(), 31);
+    assert_eq!(settings.len(), 38);
     assert_eq!((&settings["look"]["value"], &settings["look"]["from"]), (&"vivid".into(), &"folder".into()));
     assert!(settings["look"]["path"].as_str().unwrap().ends_with("roll/darkroot.toml"));
     assert_eq!(
@@ -89,7 +89,8 @@ fn the_help_states_the_defaults_that_hold() {
         let help = desk.run(&[command, "--help"]).out;
         for (name, setting) in report["settings"].as_object().unwrap() {
             let value = setting["value"].as_str().map_or_else(|| setting["value"].to_string(), str::to_owned);
-            let (_, after) = help.split_once(&format!("\n      --{name}")).unwrap();
+            let option = |end: char| help.split_once(&format!("\n      --{name}{end}"));
+            let (_, after) = [' ', '[', '\n'].into_iter().find_map(option).unwrap();
             let own = after.split("\n      --").next().unwrap();
             let own = own.split_whitespace().collect::<Vec<_>>().join(" ");
             assert!(own.contains(&format!("[default: {value}]")), "{command} --{name}: {own}");
