@@ -25,6 +25,12 @@ pub struct Curve {
     base: Base,
     /// All of the curve, where brightness was changed.
     table: Option<Table>,
+    colours: Colours,
+}
+
+/// What becomes of colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Colours {
     /// Factor on the chroma that the curve gives.
     chroma: f32,
     /// How much more chroma pale colours get.
@@ -60,7 +66,8 @@ impl Curve {
             let table =
                 (!tones.keeps_curve()).then(|| Table::of(tones, METERED_GREY, |light| base.at(light)));
             let to_cones = rows(&from_rgb(&RgbSpace::REC2020));
-            Self { base, table, chroma: chroma * tones.saturation, vibrance: tones.vibrance, to_cones }
+            let colours = Colours { chroma: chroma * tones.saturation, vibrance: tones.vibrance, to_cones };
+            Self { base, table, colours }
         };
         match look {
             Look::Neutral => Some(curve(7, 0.28, 1.0)),
@@ -77,15 +84,17 @@ impl Curve {
             Some(table) => table.at(lesser(greater(scene, 0.0), BRIGHTEST)),
         }
     }
+}
 
-    /// Responses to a colour of the scene, toned by `at`.
+impl Colours {
+    /// Responses to a colour of the scene, toned by a curve.
     #[inline(always)]
-    fn shown<const VIBRANT: bool>(&self, scene: [f32; 3], at: impl Fn(f32) -> f32) -> [f32; 3] {
+    fn shown<C: Shows, const VIBRANT: bool>(self, scene: [f32; 3], curve: C) -> [f32; 3] {
         let scene = scene.map(|v| lesser(v, BRIGHTEST));
         // Light below 0, of colours beyond Rec. 2020 and of noise, ends where light does; responses to it say more.
         let high = greater(greater(greater(scene[0], scene[1]), scene[2]), 0.0);
         let low = greater(lesser(lesser(scene[0], scene[1]), scene[2]), 0.0);
-        let (to_high, to_low) = (at(high), at(low));
+        let (to_high, to_low) = (curve.light(high), curve.light(low));
         // Grey has no span: it becomes `to_low`.
         let span = high - low;
         let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
@@ -124,23 +133,44 @@ impl Base {
 
 /// Applies a look's curve.
 pub fn tone(picture: Rgb<Scene>, curve: &Curve) -> Rgb<Toned> {
-    let base = |light| curve.base.at(light);
-    match (&curve.table, curve.vibrance == 0.0) {
-        (None, true) => toned::<false>(picture, curve, base),
-        (None, false) => toned::<true>(picture, curve, base),
-        (Some(table), true) => toned::<false>(picture, curve, |light| table.at(light)),
-        (Some(table), false) => toned::<true>(picture, curve, |light| table.at(light)),
+    let Curve { base, table, colours } = curve;
+    let (base, colours) = (*base, *colours);
+    match (table, colours.vibrance == 0.0) {
+        (None, true) => toned::<_, false>(picture, colours, base),
+        (None, false) => toned::<_, true>(picture, colours, base),
+        (Some(table), true) => toned::<_, false>(picture, colours, table),
+        (Some(table), false) => toned::<_, true>(picture, colours, table),
+    }
+}
+
+/// What shows light.
+trait Shows: Copy {
+    /// Display light of scene light, which is not negative.
+    fn light(self, scene: f32) -> f32;
+}
+
+impl Shows for Base {
+    #[inline(always)]
+    fn light(self, scene: f32) -> f32 {
+        self.at(scene)
+    }
+}
+
+impl Shows for &Table {
+    #[inline(always)]
+    fn light(self, scene: f32) -> f32 {
+        self.at(scene)
     }
 }
 
 #[inline(always)]
-fn toned<const VIBRANT: bool>(mut picture: Rgb<Scene>, curve: &Curve, at: impl Fn(f32) -> f32) -> Rgb<Toned> {
+fn toned<C: Shows, const VIBRANT: bool>(mut picture: Rgb<Scene>, colours: Colours, curve: C) -> Rgb<Toned> {
     let [r, g, b] = picture.planes_mut();
     vectorised(
         #[inline(always)]
         || {
             for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                [*r, *g, *b] = curve.shown::<VIBRANT>([*r, *g, *b], &at);
+                [*r, *g, *b] = colours.shown::<C, VIBRANT>([*r, *g, *b], curve);
             }
         },
     );
