@@ -96,6 +96,10 @@ pub mod tag {
     pub const MAKE: u16 = 0x010f;
     /// Image: camera model.
     pub const MODEL: u16 = 0x0110;
+    /// Image: pixels across one unit of length, and down.
+    pub const RESOLUTION: [u16; 2] = [0x011a, 0x011b];
+    /// Image: that unit (2 = inch).
+    pub const RESOLUTION_UNIT: u16 = 0x0128;
     /// Image: orientation.
     pub const ORIENTATION: u16 = 0x0112;
     /// Image: software that wrote the file.

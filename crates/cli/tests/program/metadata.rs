@@ -119,3 +119,17 @@ fn other_formats_carry_the_name_of_the_camera_in_their_bytes() {
         assert!(bytes.windows(13).any(|w| w == b"Simulated One"), "{name}");
     }
 }
+
+#[test]
+fn the_size_on_paper_is_stated_as_asked() {
+    let desk = Desk::with_dng();
+    for ending in CONTAINERS {
+        let name = format!("o.{ending}");
+        desk.develop(&["a.dng", "-o", &name, "--dpi", "300"]);
+        let exif = read(&desk, &name);
+        assert_eq!(number(&exif, Tag::XResolution) as u32, 300, "{name}");
+        assert_eq!(number(&exif, Tag::YResolution) as u32, 300, "{name}");
+        assert_eq!(number(&exif, Tag::ResolutionUnit) as u32, 2, "{name}");
+    }
+    desk.fails(2, &["develop", "a.dng", "--dpi", "0"], &["--dpi", "1 to 10000"]);
+}

@@ -110,7 +110,7 @@ pub fn develop_into(
     let (mut report, metadata, picture) = match settings.engine {
         Engine::Darkroot => {
             let (plan, report) = plan(input, &photo, settings, store, &recipe)?;
-            let metadata = metadata_for(photo.capture(), &plan.picture_space());
+            let metadata = metadata_for(photo.capture(), &plan.picture_space(), settings.dpi);
             drop(photo);
             if format.takes_bands() && control.seen.is_none() {
                 let write = match recipe.output.bits {
@@ -129,7 +129,7 @@ pub fn develop_into(
         }
         Engine::Imagepipe => {
             let (picture, report) = second_engine(input, photo.capture(), &recipe)?;
-            (report, metadata_for(photo.capture(), &picture.space), Some((picture, to)))
+            (report, metadata_for(photo.capture(), &picture.space, settings.dpi), Some((picture, to)))
         }
     };
     control.step(Step::Write);
@@ -229,7 +229,7 @@ pub fn encode_picture(
     capture: &Capture,
 ) -> Result<Vec<u8>, darkroot_encode::Error> {
     let mut out = io::Cursor::new(Vec::new());
-    let metadata = metadata_for(capture, &picture.space);
+    let metadata = metadata_for(capture, &picture.space, None);
     darkroot_encode::write(picture, format, &darkroot_encode::Options::default(), &metadata, &mut out)?;
     Ok(out.into_inner())
 }
@@ -311,7 +311,8 @@ fn second_engine(input: &Path, _: &Capture, _: &Recipe) -> Result<(Picture, Repo
 }
 
 /// The camera's fields with what developing changed.
-fn metadata_for(capture: &Capture, space: &PictureSpace) -> Metadata {
+fn metadata_for(capture: &Capture, space: &PictureSpace, dpi: Option<u32>) -> Metadata {
+    const INCH: u16 = 2;
     const SRGB: u16 = 1;
     const UNCALIBRATED: u16 = 65535;
     let mut metadata = capture.metadata.clone();
@@ -320,5 +321,11 @@ fn metadata_for(capture: &Capture, space: &PictureSpace) -> Metadata {
     let srgb = *space == PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
     let space = if srgb { SRGB } else { UNCALIBRATED };
     metadata.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));
+    if let Some(dpi) = dpi {
+        for tag in tag::RESOLUTION {
+            metadata.set(Directory::Image, tag, Value::Rationals(vec![(dpi, 1)]));
+        }
+        metadata.set(Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH]));
+    }
     metadata
 }

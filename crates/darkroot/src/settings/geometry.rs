@@ -167,6 +167,33 @@ pub(super) const ENLARGE: Setting = Setting {
     set: |to, text| put(&mut to.recipe.geometry.enlarge, one_of(&SWITCH, text)),
 };
 
+pub(super) const DPI: Setting = Setting {
+    name: "dpi",
+    alias: None,
+    noun: "resolution",
+    kind: Kind::Text {
+        form: "auto (what the camera wrote) or a whole number from 1 to 10000",
+        example: "\"300\"",
+    },
+    default: AUTO,
+    group: Group::Output,
+    placeholder: "N",
+    help: "Pixels an inch on paper that the file states, 1 to 10000; auto is what the camera wrote",
+    changes: Changes::Encoding,
+    set: |to, text| put(&mut to.dpi, dpi(text)),
+};
+
+/// Pixels an inch.
+fn dpi(text: &str) -> Result<Option<u32>, NotAValue> {
+    match text {
+        AUTO => Ok(None),
+        _ => match text.parse() {
+            Ok(dpi) if (1..=10_000).contains(&dpi) => Ok(Some(dpi)),
+            _ => Err(NotAValue::plain(text, "resolution", "auto, or a whole number from 1 to 10000")),
+        },
+    }
+}
+
 /// A share of the form `50%`, more than 0.
 fn share(text: &str) -> Option<f64> {
     let share = number(text.strip_suffix('%')?.trim()).ok()? / 100.0;

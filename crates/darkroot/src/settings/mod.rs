@@ -67,6 +67,8 @@ pub struct Settings {
     pub bits: Option<Bits>,
     /// Format of the outputs, where the person named one; else their ending says.
     pub format: Option<Format>,
+    /// Pixels an inch on paper that files shall state; else they state what the camera wrote.
+    pub dpi: Option<u32>,
     /// How files are written.
     pub encode: darkroot_encode::Options,
     /// Which profile.

@@ -4,7 +4,7 @@
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
 use super::geometry::{
-    CROP, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
+    CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
 };
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, balance, light, number, one_of, profile, space};
@@ -20,7 +20,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 38] = [
+pub const SETTINGS: [Setting; 39] = [
     Setting {
         name: "format",
         alias: None,
@@ -111,6 +111,7 @@ pub const SETTINGS: [Setting; 38] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.exposure.auto, one_of(&SWITCH, text)),
     },
+    DPI,
     Setting {
         name: "white-balance",
         alias: Some("wb"),
