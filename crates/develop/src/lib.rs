@@ -59,6 +59,7 @@ mod cones;
 mod finish;
 mod grid;
 mod in_turn;
+pub mod lateral;
 mod neutral;
 mod render;
 mod tile;
