@@ -65,7 +65,8 @@ pub(crate) fn align(
                     let taps = Taps::of([-dx, -dy]);
                     for k in 0..count {
                         let at = y * size.width + x + 2 * k;
-                        differences[y / 2 * columns + x / 2 + k] = samples[at] - taps.at(green, size.width, at);
+                        differences[y / 2 * columns + x / 2 + k] =
+                            samples[at] - taps.at(green, size.width, at);
                     }
                 });
                 sites.for_each_run(margins[1], |(x, y), count, [dx, dy]| {
@@ -98,9 +99,8 @@ impl Sites<'_> {
         let cell = CELL as isize;
         // The cell of a column or row, and the first column or row behind it.
         let of = |at: usize, begin: isize| (at as isize + begin).div_euclid(cell);
-        let end = |cell_at: isize, begin: isize, most: usize| {
-            (((cell_at + 1) * cell - begin) as usize).min(most)
-        };
+        let end =
+            |cell_at: isize, begin: isize, most: usize| (((cell_at + 1) * cell - begin) as usize).min(most);
         let start = |first: usize| margin + (margin + first) % 2;
         let (right, bottom) = (self.size.width - margin, self.size.height - margin);
         let mut top = start(self.first.1);
@@ -166,8 +166,12 @@ fn greens(samples: &[f32], size: Size, colours: [(usize, usize); 2], green: &mut
                 for x in (3 + (3 + first) % 2..width - 3).step_by(2) {
                     let at = y * width + x;
                     let along = |step: usize| {
-                        let [a, b, c, d] =
-                            [samples[at - 3 * step], samples[at - step], samples[at + step], samples[at + 3 * step]];
+                        let [a, b, c, d] = [
+                            samples[at - 3 * step],
+                            samples[at - step],
+                            samples[at + step],
+                            samples[at + 3 * step],
+                        ];
                         let uneven = (c - b).abs() + 0.5 * ((b - a).abs() + (d - c).abs());
                         (0.5625 * (b + c) - 0.0625 * (a + d), uneven * uneven + EVEN)
                     };

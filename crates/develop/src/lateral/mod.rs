@@ -15,10 +15,10 @@ use rayon::prelude::*;
 
 use crate::light::LinearLight;
 use crate::survey::Survey;
+pub(crate) use align::{Scratch, align, stage};
 use blocks::SIDE;
 pub(crate) use radial::Radial;
 use radial::{Place, certain};
-pub(crate) use align::{Scratch, align, stage};
 use shift::{Planes, displaced};
 
 /// Side of the squares of the frame that are displaced as one, pixels.
@@ -45,7 +45,8 @@ impl Lateral {
     fn of_cell(&self, channel: usize, column: isize, row: isize) -> [f64; 2] {
         let Some(radial) = &self.channels[channel / 2] else { return [0.0; 2] };
         let middle = |at: isize| (at as f64 + 0.5) * CELL as f64;
-        let (u, v) = ((middle(column) - self.centre[0]) / self.reach, (middle(row) - self.centre[1]) / self.reach);
+        let (u, v) =
+            ((middle(column) - self.centre[0]) / self.reach, (middle(row) - self.centre[1]) / self.reach);
         let factor = radial.factor(u * u + v * v);
         let most = self.most as f64;
         [u, v].map(|u| (factor * u).clamp(-most, most))
@@ -104,7 +105,10 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, survey: &Survey) 
                 ];
                 phases.map(|phase| {
                     planes.of(samples, phase);
-                    displaced(planes).map(|shift| Place { from_centre, shift })
+                    let shift = displaced(planes)?;
+                    // Blocks lie where their edges do.
+                    let at = [0, 1].map(|axis| from_centre[axis] + shift.at[axis] / reach);
+                    Some(Place::new(at, shift))
                 })
             },
         )

@@ -26,6 +26,8 @@ const DEPENDENT: f64 = 7.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shift {
     pub(super) by: [f64; 2],
+    /// Where the edges are that tell it, in pixels from the middle of the block.
+    pub(super) at: [f64; 2],
     pub(super) certainty: [f64; 3],
 }
 
@@ -76,10 +78,11 @@ fn low_passed(sample: impl Fn(usize, usize) -> f32, raw: &mut Vec<f32>, out: &mu
 /// Where the colour of what green shows lies, against green; `None` where the block does not tell.
 pub(super) fn displaced(planes: &Planes) -> Option<Shift> {
     let mut s = [0f64; 2];
-    let mut last = None;
+    let (mut last, mut at) = (None, [0.0; 2]);
     for _ in 0..STEPS {
         let sums = Sums::of(planes, s);
         let (step, certainty) = sums.solved()?;
+        at = sums.middle();
         s = [s[0] + step[0], s[1] + step[1]];
         // Written so that no number is refused, too.
         if !(s[0].abs() < FARTHEST && s[1].abs() < FARTHEST) {
@@ -92,17 +95,21 @@ pub(super) fn displaced(planes: &Planes) -> Option<Shift> {
     }
     // Samples lie two pixels apart; what green shows at x + s, the colour shows at x.
     let certainty = last?.map(|v| v / 4.0);
-    Some(Shift { by: s.map(|s| -2.0 * s), certainty })
+    Some(Shift { by: s.map(|s| -2.0 * s), at, certainty })
 }
 
 /// Products of what is compared, less those of the means: green, its slopes along x and y, the colour.
-struct Sums([[f64; 4]; 4]);
+struct Sums {
+    products: [[f64; 4]; 4],
+    /// Sums of squared slopes, plain and times the distance from the first column and row.
+    slopes: [f64; 3],
+}
 
 impl Sums {
     fn of(planes: &Planes, s: [f64; 2]) -> Self {
         let [(left, across, across_slope), (top, down, down_slope)] = s.map(cubic);
         let mut sums = [[0f64; 4]; 4];
-        let mut means = [0f64; 4];
+        let (mut means, mut slopes) = ([0f64; 4], [0f64; 3]);
         let first = |begin: isize| (MARGIN as isize + begin) as usize;
         let (left, top) = (first(left), first(top));
         // Rows interpolated along x, with their slopes.
@@ -118,11 +125,13 @@ impl Sums {
         for j in 0..INNER {
             let colour = &planes.colour[(MARGIN + j) * SAMPLES + MARGIN..][..INNER];
             let mut products = [[0f32; 4]; 4];
-            let mut of_row = [0f32; 4];
+            let (mut of_row, mut along) = ([0f32; 4], 0f32);
             for i in 0..INNER {
-                let taps = |k: usize| [rows[j][k][i], rows[j + 1][k][i], rows[j + 2][k][i], rows[j + 3][k][i]];
+                let taps =
+                    |k: usize| [rows[j][k][i], rows[j + 1][k][i], rows[j + 2][k][i], rows[j + 3][k][i]];
                 let values = taps(0);
                 let v = [dot(&values, &down), dot(&taps(1), &down), dot(&values, &down_slope), colour[i]];
+                along += (v[1] * v[1] + v[2] * v[2]) * i as f32;
                 for a in 0..4 {
                     of_row[a] += v[a];
                     for b in a..4 {
@@ -130,6 +139,8 @@ impl Sums {
                     }
                 }
             }
+            let of_slopes = f64::from(products[1][1] + products[2][2]);
+            slopes = [slopes[0] + of_slopes, slopes[1] + f64::from(along), slopes[2] + j as f64 * of_slopes];
             for a in 0..4 {
                 means[a] += f64::from(of_row[a]);
                 for b in a..4 {
@@ -144,12 +155,18 @@ impl Sums {
                 sums[b][a] = sums[a][b];
             }
         }
-        Self(sums)
+        Self { products: sums, slopes }
+    }
+
+    /// The mean place of the slopes, in pixels from the middle.
+    fn middle(&self) -> [f64; 2] {
+        let [all, x, y] = self.slopes;
+        [x, y].map(|v| if all > 0.0 { 2.0 * (v / all - 0.5 * (INNER as f64 - 1.0)) } else { 0.0 })
     }
 
     /// The step of the shift, and its certainty, both in samples.
     fn solved(&self) -> Option<([f64; 2], [f64; 3])> {
-        let [green, x, y, colour] = self.0;
+        let [green, x, y, colour] = self.products;
         // What green itself explains is taken out of all.
         let less = |a: f64, b: f64, ab: f64| ab - a * b / green[0];
         let (xx, xy, yy) =
