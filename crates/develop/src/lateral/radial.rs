@@ -74,8 +74,6 @@ const ROUNDS: usize = 8;
 const TELLS: f64 = 9.0;
 /// Weight of the assumption that k2 is 0, where it is not to be fitted, and where it is.
 const STRAIGHT: [f64; 2] = [1e12, 5.0];
-/// Share to which k2 must lessen how badly sectors are predicted, to be fitted.
-const SIMPLER: f64 = 0.97;
 
 /// The function, where it is certain.
 pub(super) fn certain(places: &[Place]) -> Option<Radial> {
@@ -85,7 +83,8 @@ pub(super) fn certain(places: &[Place]) -> Option<Radial> {
     }
     let [plain, bent] = [false, true].map(|bends| Tried::of(places, bends));
     let (plain, bent) = (plain?, bent?);
-    let tried = if bent.bad < SIMPLER * plain.bad { bent } else { plain };
+    // k2 is there where sectors that had no say are predicted better with it.
+    let tried = if bent.bad < plain.bad { bent } else { plain };
     tried.is_certain().then_some(tried.all)
 }
 
