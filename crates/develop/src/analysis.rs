@@ -7,6 +7,7 @@ use darkroot_photo::{Capture, Counts};
 use crate::auto_white::Seen;
 use crate::clipped_colours::ClippedColours;
 use crate::denoise::{self, Asked, Denoiser, Measured, NoiseModel};
+use crate::lateral::{self, Lateral};
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::{self, Window};
@@ -28,6 +29,7 @@ pub struct Analysis {
     mends: [OnceLock<Arc<Mends>>; 2],
     denoiser: Mutex<Option<Arc<Denoiser>>>,
     blur: OnceLock<Option<f32>>,
+    lateral: OnceLock<Option<Lateral>>,
     colours: OnceLock<Option<Seen>>,
     /// For the multipliers that were asked for last: a person who drags another setting keeps them.
     clipped: Mutex<Option<([f32; 3], Arc<ClippedColours>)>>,
@@ -46,6 +48,7 @@ impl Analysis {
             mends: [OnceLock::new(), OnceLock::new()],
             denoiser: Mutex::new(None),
             blur: OnceLock::new(),
+            lateral: OnceLock::new(),
             colours: OnceLock::new(),
             clipped: Mutex::new(None),
         }
@@ -136,6 +139,12 @@ impl Analysis {
         let measured =
             || blur::measured(&self.capture, &self.light, self.survey().saturation[1], noise.as_ref());
         *self.blur.get_or_init(measured)
+    }
+
+    /// Lateral chromatic aberration, as the picture shows it; `None` where nothing certain is known.
+    pub fn lateral(&self) -> Option<Lateral> {
+        let measured = || lateral::measured(&self.capture, &self.light, self.survey());
+        *self.lateral.get_or_init(measured)
     }
 
     /// Colours where the frame is not clipped, balanced, continued into where it is.

@@ -3,7 +3,7 @@
 //! ```text
 //! plan    looks at the whole capture once: white, highlights, exposure
 //! render  cuts the picture into tiles and runs the stages over each, in parallel:
-//!         level -> denoise -> corrections -> balance -> highlights -> demosaic -> sharpen -> corrections
+//!         level -> denoise -> corrections -> balance -> highlights -> lateral -> demosaic -> sharpen -> corrections
 //!         -> correct (profile) -> exposure -> tone -> gamut -> transfer
 //! ```
 //!
@@ -59,6 +59,7 @@ mod cones;
 mod finish;
 mod grid;
 mod in_turn;
+pub mod lateral;
 mod neutral;
 mod render;
 mod tile;

@@ -14,8 +14,9 @@ use crate::demosaic::Method;
 use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
 use crate::gamut::Primaries;
-use crate::geometry::{Laid, lay};
+use crate::geometry::{Geometry, Laid, Lens, lay};
 use crate::highlights::{CLIPPED, Rebuild, Treatment};
+use crate::lateral::Lateral;
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::Noise;
@@ -66,6 +67,8 @@ pub struct Plan {
     pub(crate) mends: Arc<Mends>,
     /// What takes noise from the mosaic; `None` for nothing.
     pub(crate) denoiser: Option<Arc<Denoiser>>,
+    /// Where red and blue are to be brought from to where green is; `None` for nothing.
+    pub(crate) lateral: Option<Lateral>,
     /// What sharpens the picture; `None` for nothing.
     pub(crate) sharpener: Option<Sharpener>,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
@@ -119,6 +122,8 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let denoiser = denoiser(analysis, recipe.denoise, measuring, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
     notes.extend(laid.lens_note(capture));
+    let lateral = lateral(analysis, &recipe.geometry, measuring || demosaic == Method::None, &laid);
+    notes.extend(lateral.map(|lateral| lateral.note()));
     let is_uneven = analysis.light().is_corrected()
         || !capture.picture_corrections.is_empty()
         || laid.vignetting.is_some();
@@ -141,6 +146,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         },
         mends,
         denoiser,
+        lateral,
         sharpener: sharpener(analysis, recipe.sharpen, measuring, multipliers),
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
@@ -167,6 +173,13 @@ fn mends(analysis: &Analysis, hot_pixels: HotPixels, measuring: bool) -> Arc<Men
         _ if measuring || analysis.capture().rendered => Arc::default(),
         wanted => Arc::clone(analysis.mends(wanted == HotPixels::Auto)),
     }
+}
+
+/// Lateral chromatic aberration that is to be corrected: where something certain is known, and no correction of the lens has its
+/// own. A measurement gets the samples where they are.
+fn lateral(analysis: &Analysis, asked: &Geometry, measuring: bool, laid: &Laid) -> Option<Lateral> {
+    let is_kept = measuring || asked.keep_fringes || asked.lens == Lens::Off || laid.splits_colours();
+    if is_kept { None } else { analysis.lateral() }
 }
 
 /// What takes away noise: as much as is asked for, or as suits the look.

@@ -19,7 +19,7 @@ use crate::stage::{Stage, tile_border};
 use crate::tile::{Levelled, covered, tile, tile_ends};
 use crate::transfer::Sample;
 use crate::view::{Cancel, Cancelled, Scale, View};
-use crate::{corrections, fringe};
+use crate::{corrections, fringe, lateral};
 
 /// Rows of the sensor that one task looks at.
 const BAND_ROWS: usize = 192;
@@ -98,12 +98,10 @@ impl Plan {
     }
 
     /// Stages that change the mosaic before it becomes a picture.
-    fn changes(&self) -> &'static [Stage] {
-        if matches!(self.highlights, Treatment::Rebuild(_)) && self.demosaic != Method::None {
-            &[highlights::STAGE]
-        } else {
-            &[]
-        }
+    fn changes(&self) -> Vec<Stage> {
+        let rebuilds = matches!(self.highlights, Treatment::Rebuild(_)) && self.demosaic != Method::None;
+        let aligns = self.lateral.as_ref().map(lateral::stage);
+        rebuilds.then_some(highlights::STAGE).into_iter().chain(aligns).collect()
     }
 
     /// Stages that read the changed mosaic.
@@ -148,6 +146,7 @@ struct Scratch<T> {
     /// The same before it is sharpened, and more of it.
     wide: Rgb<CameraSpace>,
     sharpened: sharpen::Scratch,
+    aligned: lateral::Scratch,
     /// The picture, where it is not made of the frame's pixels as they are.
     warped: Rgb<CameraSpace>,
     finish: Finish<T>,
@@ -174,7 +173,7 @@ impl<'a> Render<'a> {
                 .warp
                 .as_ref()
                 .map(|warp| (warp, Grid::of_area(Rect::full(plan.laid.size), view.scale))),
-            border: tile_border(plan.changes(), &plan.readers(view.scale)),
+            border: tile_border(&plan.changes(), &plan.readers(view.scale)),
             wider: sharpener.map_or(0, |_| sharpen::STAGE.border),
             reduction,
             rect,
@@ -195,6 +194,7 @@ impl<'a> Render<'a> {
             camera: Rgb::black(nothing),
             wide: Rgb::black(nothing),
             sharpened: sharpen::Scratch::default(),
+            aligned: lateral::Scratch::default(),
             warped: Rgb::black(nothing),
             finish: Finish::new(),
         }
@@ -251,7 +251,7 @@ impl<'a> Render<'a> {
     /// The pipeline down to camera RGB, for one rectangle of the grid.
     fn neighbourhood_stages<T>(&self, rect: Rect, scratch: &mut Scratch<T>) {
         let (plan, border, bin) = (self.plan, self.border, self.grid.bin);
-        let Scratch { denoised, mosaic, ends, camera, wide, sharpened, .. } = scratch;
+        let Scratch { denoised, mosaic, ends, camera, wide, sharpened, aligned, .. } = scratch;
         let (x, y) = self.grid.corner(rect);
         let around = border + self.wider;
         let size = Size { width: rect.width * bin + 2 * around, height: rect.height * bin + 2 * around };
@@ -267,6 +267,9 @@ impl<'a> Render<'a> {
         tile(capture, (light, levelled), plan.multipliers, begin, size, mosaic);
         tile_ends(plan, begin, size, ends);
         highlights::treat(mosaic, begin, &plan.highlights, &ends.samples);
+        if let Some(lateral) = &plan.lateral {
+            lateral::align(mosaic, begin, lateral, aligned);
+        }
         match &self.reduction {
             Some(reduction) => reduction.reduce(mosaic, border, bin, begin, camera),
             None => {

@@ -13,6 +13,7 @@ mod geometry;
 mod grey;
 mod highlights;
 mod hostile;
+mod lateral;
 mod numbers;
 mod ramps;
 mod sharpen;

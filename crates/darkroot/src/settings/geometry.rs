@@ -115,7 +115,7 @@ pub(super) const FRINGES: Setting = Setting {
     default: "true",
     group: Group::Picture,
     placeholder: "BOOL",
-    help: "Whether lateral chromatic aberration is corrected with the rest of the lens",
+    help: "Whether lateral chromatic aberration is corrected: as the file or lensfun has it, else as the picture itself shows it",
     changes: Changes::Picture,
     set: |to, text| put(&mut to.recipe.geometry.keep_fringes, one_of(&SWITCH, text).map(|on| !on)),
 };

@@ -41,6 +41,11 @@ impl Laid {
         Some(what.to_owned())
     }
 
+    /// Whether a correction of the lens moves red, green and blue apart.
+    pub(crate) fn splits_colours(&self) -> bool {
+        self.warp.as_ref().is_some_and(Warp::splits_colours)
+    }
+
     /// The pixel of the frame at a pixel of the picture.
     pub(crate) fn in_frame(&self, capture: &Capture, x: usize, y: usize) -> (usize, usize) {
         match &self.warp {

@@ -59,6 +59,11 @@ impl Warp {
         })
     }
 
+    /// Whether red, green and blue of a place come from different ones.
+    pub(super) fn splits_colours(&self) -> bool {
+        self.lens.iter().any(LensWarp::splits_colours)
+    }
+
     /// Where a colour of a place of the picture lies in the active area, in pixels from its corner.
     pub(crate) fn place(&self, channel: usize, x: f64, y: f64) -> [f64; 2] {
         let v = self.to_frame * Vector3::new(x, y, 1.0);
@@ -72,7 +77,7 @@ impl Warp {
         let first = (rect.x / STEP, rect.y / STEP);
         let (columns, rows) =
             (rect.right().div_ceil(STEP) + 1 - first.0, rect.bottom().div_ceil(STEP) + 1 - first.1);
-        let channels = if self.lens.iter().any(LensWarp::splits_colours) { 3 } else { 1 };
+        let channels = if self.splits_colours() { 3 } else { 1 };
         let scale = bin as f64;
         let most = [self.area.width as f64 / scale, self.area.height as f64 / scale];
         let node = |channel: usize, i: usize| {

@@ -1,0 +1,184 @@
+//! Brings red and blue of a mosaic to where green is, before colours are interpolated: interpolation lets fine detail of red
+//! and blue follow green, so afterwards half of a displacement could no longer be told from the rest.
+//!
+//! Red that belongs to green at x lies at x + d(x). Where there is a red sample, its difference to the green that belongs to
+//! it, at x - d(x), is what is smooth in most pictures (Cok, US patent 4642678, 1987, has the hue that way). These differences
+//! are interpolated at the right places and added to green. Green samples stay as they are, and where red is green there is
+//! nothing to interpolate.
+
+use darkroot_colour::simd::vectorised;
+use darkroot_photo::{Filter, Layout, Mosaic, Size};
+
+use super::shift::cubic;
+use super::{CELL, Lateral};
+use crate::stage::{Stage, WhenSmaller};
+
+/// Pixels that are looked at besides those that a displacement leads to: four for differences, two for green between pixels,
+/// three for green at red and blue.
+const AROUND: usize = 9;
+/// Steps of green below which both directions count alike, squared.
+const EVEN: f32 = 1e-12;
+
+/// What a thread works in.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    green: Vec<f32>,
+    /// By colour, in every second column and row from its first one on.
+    differences: Vec<f32>,
+}
+
+/// What it asks of a tile.
+pub(crate) fn stage(lateral: &Lateral) -> Stage {
+    Stage { name: "lateral", border: 2 * lateral.most + AROUND, when_smaller: WhenSmaller::Same }
+}
+
+/// Brings red and blue of a Bayer mosaic, whose first sample lies in column and row `begin` of the frame, to where green is.
+/// The outermost pixels, as [`stage`] says, are left as they are.
+pub(crate) fn align(
+    mosaic: &mut Mosaic<f32>,
+    begin: (isize, isize),
+    lateral: &Lateral,
+    scratch: &mut Scratch,
+) {
+    let Layout::Cfa(cfa) = &mosaic.layout else { return };
+    let size = mosaic.size;
+    let margins = [5 + lateral.most, stage(lateral).border];
+    if size.width <= 2 * margins[1] || size.height <= 2 * margins[1] {
+        return;
+    }
+    let colours = [Filter::Red, Filter::Blue].map(|filter| cfa.first(filter).unwrap_or_default());
+    greens(&mosaic.samples, size, colours, &mut scratch.green);
+    for (colour, first) in [0, 2].into_iter().zip(colours) {
+        if !lateral.moves(colour) {
+            continue;
+        }
+        let sites = Sites { size, first, begin, lateral, colour };
+        let columns = size.width.div_ceil(2);
+        let (green, differences) = (&scratch.green, &mut scratch.differences);
+        differences.clear();
+        differences.resize(columns * size.height.div_ceil(2), 0.0);
+        let samples = &mut mosaic.samples;
+        vectorised(
+            #[inline(always)]
+            || {
+                sites.for_each_run(margins[0], |(x, y), count, [dx, dy]| {
+                    let taps = Taps::of([-dx, -dy]);
+                    for k in 0..count {
+                        let at = y * size.width + x + 2 * k;
+                        differences[y / 2 * columns + x / 2 + k] =
+                            samples[at] - taps.at(green, size.width, at);
+                    }
+                });
+                sites.for_each_run(margins[1], |(x, y), count, [dx, dy]| {
+                    let taps = Taps::of([0.5 * dx, 0.5 * dy]);
+                    for k in 0..count {
+                        let at = y * size.width + x + 2 * k;
+                        samples[at] = green[at] + taps.at(differences, columns, y / 2 * columns + x / 2 + k);
+                    }
+                });
+            },
+        );
+    }
+}
+
+/// The places of one colour in a mosaic.
+struct Sites<'a> {
+    size: Size,
+    /// Column and row of the first one: 0 or 1.
+    first: (usize, usize),
+    begin: (isize, isize),
+    lateral: &'a Lateral,
+    colour: usize,
+}
+
+impl Sites<'_> {
+    /// Calls `run` for places side by side in a cell of the frame, every second column: column and row of the first one, how
+    /// many, and their displacement. Cells are those of the frame, so that tiles agree.
+    #[inline(always)]
+    fn for_each_run(&self, margin: usize, mut run: impl FnMut((usize, usize), usize, [f64; 2])) {
+        let cell = CELL as isize;
+        // The cell of a column or row, and the first column or row behind it.
+        let of = |at: usize, begin: isize| (at as isize + begin).div_euclid(cell);
+        let end =
+            |cell_at: isize, begin: isize, most: usize| (((cell_at + 1) * cell - begin) as usize).min(most);
+        let start = |first: usize| margin + (margin + first) % 2;
+        let (right, bottom) = (self.size.width - margin, self.size.height - margin);
+        let mut top = start(self.first.1);
+        while top < bottom {
+            let row = of(top, self.begin.1);
+            let below = end(row, self.begin.1, bottom);
+            let mut x = start(self.first.0);
+            while x < right {
+                let column = of(x, self.begin.0);
+                let count = (end(column, self.begin.0, right) - x).div_ceil(2);
+                let by = self.lateral.of_cell(self.colour, column, row);
+                for y in (top..below).step_by(2) {
+                    run((x, y), count, by);
+                }
+                x += 2 * count;
+            }
+            top += 2 * (below - top).div_ceil(2);
+        }
+    }
+}
+
+/// Weights of the 4 x 4 values that a value at a distance is made of.
+struct Taps {
+    left: isize,
+    top: isize,
+    across: [f32; 4],
+    down: [f32; 4],
+}
+
+impl Taps {
+    fn of(by: [f64; 2]) -> Self {
+        let [(left, across, _), (top, down, _)] = by.map(cubic);
+        Self { left, top, across, down }
+    }
+
+    /// The value at the distance from one, in rows of this width.
+    #[inline(always)]
+    fn at(&self, values: &[f32], width: usize, at: usize) -> f32 {
+        let first = at as isize + self.left + self.top * width as isize;
+        let mut sums = [0f32; 4];
+        for (j, weight) in self.down.iter().enumerate() {
+            let row = &values[first as usize + j * width..][..4];
+            for (sum, v) in sums.iter_mut().zip(row) {
+                *sum += weight * v;
+            }
+        }
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.across[i] * sums[i]);
+        (a + d) + (b + c)
+    }
+}
+
+/// Green everywhere: at red and blue from the four along the row and along the column, by cubic interpolation; the more even
+/// direction counts more. Red and blue have no say, because they lie elsewhere.
+fn greens(samples: &[f32], size: Size, colours: [(usize, usize); 2], green: &mut Vec<f32>) {
+    let width = size.width;
+    green.clear();
+    green.extend_from_slice(samples);
+    vectorised(
+        #[inline(always)]
+        || {
+            for y in 3..size.height - 3 {
+                let first = colours.iter().find(|(_, row)| row % 2 == y % 2).map_or(0, |(column, _)| *column);
+                for x in (3 + (3 + first) % 2..width - 3).step_by(2) {
+                    let at = y * width + x;
+                    let along = |step: usize| {
+                        let [a, b, c, d] = [
+                            samples[at - 3 * step],
+                            samples[at - step],
+                            samples[at + step],
+                            samples[at + 3 * step],
+                        ];
+                        let uneven = (c - b).abs() + 0.5 * ((b - a).abs() + (d - c).abs());
+                        (0.5625 * (b + c) - 0.0625 * (a + d), uneven * uneven + EVEN)
+                    };
+                    let ((h, uneven_h), (v, uneven_v)) = (along(1), along(width));
+                    green[at] = (h * uneven_v + v * uneven_h) / (uneven_h + uneven_v);
+                }
+            }
+        },
+    );
+}
