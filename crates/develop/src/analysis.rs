@@ -135,9 +135,10 @@ impl Analysis {
     /// How blurred the picture is where it is sharpest: the standard deviation of a Gaussian, in pixels. `None` where too few
     /// edges tell.
     pub fn blur(&self) -> Option<f32> {
-        let noise = self.noise_model();
-        let measured =
-            || blur::measured(&self.capture, &self.light, self.survey().saturation[1], noise.as_ref());
+        let measured = || {
+            let (green, noise) = (self.survey().saturation[1], self.noise_model());
+            blur::measured(&self.capture, &self.light, green, noise.as_ref())
+        };
         *self.blur.get_or_init(measured)
     }
 

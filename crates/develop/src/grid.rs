@@ -43,11 +43,7 @@ impl Grid {
 
     /// The pixels that become a rectangle of the upright picture.
     pub(crate) fn of_upright(&self, upright: Rect) -> Rect {
-        let size = self.orientation.applied_to(self.size);
-        let back = self.orientation.inverse();
-        let (x0, y0) = back.place(upright.x, upright.y, size);
-        let (x1, y1) = back.place(upright.right() - 1, upright.bottom() - 1, size);
-        Rect { x: x0.min(x1), y: y0.min(y1), width: x0.abs_diff(x1) + 1, height: y0.abs_diff(y1) + 1 }
+        self.orientation.inverse().place_rect(upright, self.orientation.applied_to(self.size))
     }
 
     /// Column and row of the upright picture that a pixel becomes.

@@ -3,8 +3,8 @@
 //! ```text
 //! plan    looks at the whole capture once: white, highlights, exposure
 //! render  cuts the picture into tiles and runs the stages over each, in parallel:
-//!         level -> denoise -> corrections -> balance -> highlights -> lateral -> demosaic -> sharpen -> corrections
-//!         -> correct (profile) -> exposure -> tone -> gamut -> transfer
+//!         level -> denoise -> corrections -> balance -> highlights -> lateral -> demosaic -> sharpen
+//!         -> corrections -> geometry -> correct (profile) -> exposure -> tone -> gamut -> transfer
 //! ```
 //!
 //! A stage is a function over a small picture in its own file; it neither knows nor cares whether that picture

@@ -8,7 +8,7 @@ use crate::demosaic::reduce::{self, Reduction};
 use crate::demosaic::{self, Method, debias};
 use crate::denoise::{self, Coarse, Denoiser};
 use crate::finish::Finish;
-use crate::geometry::{Warp, brighten, resample};
+use crate::geometry::{self, Warp, brighten, resample};
 use crate::grid::Grid;
 use crate::highlights::{self, Treatment};
 use crate::in_turn::in_turn;
@@ -149,6 +149,7 @@ struct Scratch<T> {
     aligned: lateral::Scratch,
     /// The picture, where it is not made of the frame's pixels as they are.
     warped: Rgb<CameraSpace>,
+    mapped: geometry::Scratch,
     finish: Finish<T>,
 }
 
@@ -160,19 +161,19 @@ impl<'a> Render<'a> {
         let coarse =
             |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&plan.capture, &plan.light, cancel)?));
         let reduction = (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout));
-        let columns = plan.laid.warp.as_ref().map_or(columns, |warp| warp.columns(columns));
+        let (grid, warp, columns) = match &plan.laid.warp {
+            None => (Grid::of(plan, view.scale), None, columns),
+            Some(warp) => {
+                let of_picture = Grid::of_area(Rect::full(plan.laid.size), view.scale);
+                let of_frame = Grid::of_area(plan.capture.active_area, view.scale);
+                (of_frame, Some((warp, of_picture)), warp.columns(columns))
+            }
+        };
         let sharpener = plan.sharpener.as_ref().filter(|_| reduction.is_none());
         Ok(Self {
             plan,
-            grid: match plan.laid.warp {
-                None => Grid::of(plan, view.scale),
-                Some(_) => Grid::of_area(plan.capture.active_area, view.scale),
-            },
-            warp: plan
-                .laid
-                .warp
-                .as_ref()
-                .map(|warp| (warp, Grid::of_area(Rect::full(plan.laid.size), view.scale))),
+            grid,
+            warp,
             border: tile_border(&plan.changes(), &plan.readers(view.scale)),
             wider: sharpener.map_or(0, |_| sharpen::STAGE.border),
             reduction,
@@ -196,6 +197,7 @@ impl<'a> Render<'a> {
             sharpened: sharpen::Scratch::default(),
             aligned: lateral::Scratch::default(),
             warped: Rgb::black(nothing),
+            mapped: geometry::Scratch::default(),
             finish: Finish::new(),
         }
     }
@@ -237,7 +239,8 @@ impl<'a> Render<'a> {
                 let places = warp.places(upright, grid.bin);
                 let source = warp.needs(&places, grid.bin);
                 self.neighbourhood_stages(source, scratch);
-                resample(warp, (&scratch.camera, source), &places, upright, &mut scratch.warped);
+                let Scratch { camera, warped, mapped, .. } = &mut *scratch;
+                resample(warp, (camera, source), &places, upright, mapped, warped);
                 scratch.finish.tile(self.plan, grid, &scratch.warped, upright, (band_rect, band));
             } else {
                 let rect = self.grid.of_upright(upright);

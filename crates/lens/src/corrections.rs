@@ -1,13 +1,11 @@
 //! Coefficients over a picture of known size: where light is that belongs elsewhere, and how much of it is missing.
 
-use serde::Serialize;
-
 /// The largest factor that [`Corrections::gain`] gives: four stops, more than any lens of the database loses. Beyond
 /// where vignetting was measured its polynomial may reach zero.
 pub const MOST_GAIN: f64 = 16.0;
 
 /// A radial polynomial, `r' = r * (p[0] + p[1] r + ... + p[4] r^4)`, with its radii in units of a picture's pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Radial {
     /// Coefficients, of pixels.
     pub(crate) terms: [f64; 5],
@@ -38,7 +36,7 @@ impl Radial {
 
 /// What a lens did to a picture of one size. Places are in pixels from the picture's middle, x to the right, y
 /// downwards; a middle pixel's middle is (0, 0), and the outermost pixels of a picture of width w have x = ±(w - 1)/2.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Corrections {
     pub(crate) distortion: Option<Radial>,
     /// Red and blue, from where distortion puts green.
@@ -102,7 +100,7 @@ impl Corrections {
 }
 
 /// Distortion at one focal length.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Distortion {
     /// `a b c` of `ptlens`, or `k1 k2 0` of `poly5`.
     pub(crate) terms: [f64; 3],
@@ -120,7 +118,7 @@ impl Distortion {
 
 /// Lateral chromatic aberration at one focal length: constant, linear and quadratic coefficients (manual of lensfun,
 /// "Lateral chromatic aberration": `linear`, `poly3`).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Tca {
     pub(crate) red: [f64; 3],
     pub(crate) blue: [f64; 3],
@@ -129,14 +127,14 @@ pub(crate) struct Tca {
 
 /// Vignetting at one focal length, aperture and distance: coefficients of the squared radius and its powers (manual of
 /// lensfun, "Vignetting": `pa`).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Vignetting {
     pub(crate) terms: [f64; 3],
     pub(crate) measured: Measured,
 }
 
 /// The sensor that coefficients were measured on.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Measured {
     /// Its crop factor through that of the sensor at hand.
     pub(crate) crop: f64,
@@ -145,7 +143,7 @@ pub(crate) struct Measured {
 }
 
 /// What is known of a lens at the settings of one shot.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Known {
     pub(crate) distortion: Option<Distortion>,
     pub(crate) tca: Option<Tca>,

@@ -1,7 +1,5 @@
 //! The lens of a shot.
 
-use serde::Serialize;
-
 use crate::catalogue::{self, Camera, Lens};
 use crate::corrections::{Corrections, Distortion, Known, Measured, Tca, Vignetting};
 use crate::interpolate;
@@ -46,8 +44,7 @@ impl<'a> Shot<'a> {
 }
 
 /// By what a lens was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Found {
     /// Its name.
     Name,
@@ -59,7 +56,7 @@ pub enum Found {
 }
 
 /// A lens of the database, and what is known of it at the settings of a shot.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Match {
     /// Camera of the database, maker and model; `None` if it has none such.
     pub camera: Option<String>,

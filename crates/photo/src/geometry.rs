@@ -55,6 +55,11 @@ impl Rect {
         Size { width: self.width, height: self.height }
     }
 
+    /// Column and row of its middle; the middle of the first pixel is (0.5, 0.5).
+    pub fn middle(self) -> [f64; 2] {
+        [self.x as f64 + 0.5 * self.width as f64, self.y as f64 + 0.5 * self.height as f64]
+    }
+
     /// The common part of two rectangles; `None` when there is none.
     pub fn intersection(self, other: Self) -> Option<Self> {
         let (x, y) = (self.x.max(other.x), self.y.max(other.y));
@@ -137,6 +142,13 @@ impl Orientation {
             Self::Rotate270 => Self::Rotate90,
             own_inverse => own_inverse,
         }
+    }
+
+    /// Where a rectangle, of a pixel at least, that is stored in a picture of `size` stands in the upright picture.
+    pub fn place_rect(self, rect: Rect, size: Size) -> Rect {
+        let (x0, y0) = self.place(rect.x, rect.y, size);
+        let (x1, y1) = self.place(rect.right() - 1, rect.bottom() - 1, size);
+        Rect { x: x0.min(x1), y: y0.min(y1), width: x0.abs_diff(x1) + 1, height: y0.abs_diff(y1) + 1 }
     }
 
     /// Where the pixel stored at (`x`, `y`) in a picture of `size` stands in the upright picture.

@@ -24,7 +24,7 @@ pub use spaces::{SPACES, space};
 
 use std::path::PathBuf;
 
-use darkroot_develop::{Bits, Look, OutputSpace, Recipe, Tones};
+use darkroot_develop::{Bits, Look, OutputSpace, Recipe};
 use darkroot_encode::Format;
 use darkroot_photo::PictureSpace;
 use darkroot_raw::{Decoder, Limits};
@@ -204,18 +204,7 @@ impl Settings {
 
 /// Linear light has no look that could be changed.
 fn check_tones(recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
-    let (tones, fixed) = (&recipe.tones, Tones::default());
-    let changed = |v: f32, fixed: f32| (v - fixed).abs() > 0.0;
-    let asks = [
-        ("contrast", changed(tones.contrast, fixed.contrast)),
-        ("shadows", changed(tones.shadows, fixed.shadows)),
-        ("highlights-tone", changed(tones.highlights, fixed.highlights)),
-        ("black", changed(tones.black, fixed.black)),
-        ("white", changed(tones.white, fixed.white)),
-        ("saturation", changed(tones.saturation, fixed.saturation)),
-        ("vibrance", changed(tones.vibrance, fixed.vibrance)),
-    ];
-    let settings: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    let settings = tones::changed(&recipe.tones);
     if !linear || settings.is_empty() { Ok(()) } else { Err(SettingsError::TonesOnLinear { settings }) }
 }
 

@@ -1,5 +1,7 @@
 //! Settings of what is changed about a look: their rows of the table.
 
+use darkroot_develop::Tones;
+
 use super::Settings;
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
@@ -83,3 +85,18 @@ pub(super) const VIBRANCE: Setting = row(
     "Chroma that pale colours get more, as a share of theirs, -1 to 1; pure ones get none",
     |to, text| put(&mut to.recipe.tones.vibrance, number(text).map(|n| n as f32)),
 );
+
+/// Names of the settings that change something.
+pub(super) fn changed(tones: &Tones) -> Vec<&'static str> {
+    let fixed = Tones::default();
+    let pairs = [
+        (CONTRAST.name, tones.contrast, fixed.contrast),
+        (SHADOWS.name, tones.shadows, fixed.shadows),
+        (HIGHLIGHTS.name, tones.highlights, fixed.highlights),
+        (BLACK.name, tones.black, fixed.black),
+        (WHITE.name, tones.white, fixed.white),
+        (SATURATION.name, tones.saturation, fixed.saturation),
+        (VIBRANCE.name, tones.vibrance, fixed.vibrance),
+    ];
+    pairs.iter().filter(|(_, asked, fixed)| (asked - fixed).abs() > 0.0).map(|(name, ..)| *name).collect()
+}

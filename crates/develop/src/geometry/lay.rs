@@ -5,8 +5,8 @@ use darkroot_lens::Corrections;
 use darkroot_photo::{Capture, Correction, Orientation, Rect, Size};
 
 use super::homography::{from_square, moved, place, scaled, turned};
-use super::lens::{LensWarp, middle};
-use super::warp::{Source, Warp};
+use super::lens::LensWarp;
+use super::warp::Warp;
 use super::{Crop, Flip, Geometry, Lens, Resize, Turn};
 use crate::error::{Error, GeometryFault};
 
@@ -33,12 +33,10 @@ impl Laid {
     pub(crate) fn lens_note(&self, capture: &Capture) -> Option<String> {
         let is_warp = |correction: &Correction| matches!(correction, Correction::Warp(_));
         let mut all = capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
-        let what = match self.warp.as_ref().and_then(Warp::corrects_as) {
-            Some(Source::File) => "the lens's distortion is corrected as the file says",
-            _ if !all.any(is_warp) => return None,
-            _ => "the file's correction of the lens's distortion is not applied",
-        };
-        Some(what.to_owned())
+        if self.warp.as_ref().is_some_and(Warp::corrects_as_the_file_says) {
+            return Some("the lens's distortion is corrected as the file says".to_owned());
+        }
+        all.any(is_warp).then(|| "the file's correction of the lens's distortion is not applied".to_owned())
     }
 
     /// Whether a correction of the lens moves red, green and blue apart.
@@ -81,7 +79,7 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
     let known = asked.known.filter(|_| asked.lens == Lens::Lensfun && of_file.is_empty());
     let known = known.map(|known| if asked.keep_fringes { known.without_tca() } else { known });
     let vignetting = known.filter(|known| known.has_vignetting() && !asked.keep_vignetting);
-    let vignetting = vignetting.map(|known| (known, middle(capture.default_crop)));
+    let vignetting = vignetting.map(|known| (known, capture.default_crop.middle()));
     let of_lens = known.and_then(|known| LensWarp::known(known, in_area(capture.default_crop)));
     let zoom = of_lens.as_ref().map_or(1.0, |lens| zoom(lens, in_area(shown), area.size()));
     let lens = [of_file, of_lens.into_iter().collect()].concat();
@@ -93,17 +91,13 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
     let whole = (size.width as f64, size.height as f64) == (width, height);
     if straight && whole && lens.is_empty() {
         let upright = Rect { x: part.x as usize, y: part.y as usize, width: size.width, height: size.height };
-        return Ok(Laid {
-            size,
-            crop: in_frame(upright, shown, orientation),
-            orientation,
-            warp: None,
-            vignetting,
-        });
+        let cut = orientation.inverse().place_rect(upright, canvas);
+        let crop = Rect { x: shown.x + cut.x, y: shown.y + cut.y, ..cut };
+        return Ok(Laid { size, crop, orientation, warp: None, vignetting });
     }
     let (across, down) = (width / size.width as f64, height / size.height as f64);
     let in_area = in_area(shown);
-    let [x, y] = middle(in_area);
+    let [x, y] = in_area.middle();
     let to_frame = moved(x, y)
         * scaled(zoom, zoom)
         * moved(in_area.x as f64 - x, in_area.y as f64 - y)
@@ -119,7 +113,7 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
 /// frame is in it: found by halving.
 fn zoom(lens: &LensWarp, shown: Rect, area: Size) -> f64 {
     const STEPS: usize = 32;
-    let [x, y] = middle(shown);
+    let [x, y] = shown.middle();
     let border = (0..4 * STEPS).map(|i| {
         let along = (i % STEPS) as f64 / STEPS as f64;
         let (u, v) = [(along, 0.0), (1.0, along), (1.0 - along, 1.0), (0.0, 1.0 - along)][i / STEPS];
@@ -270,20 +264,6 @@ fn resized(asked: &Geometry, width: f64, height: f64) -> Result<Size, Error> {
         return Err(Error::Geometry { fault: GeometryFault::Size, size });
     }
     Ok(size)
-}
-
-/// The rectangle of the frame that is a rectangle of the upright picture of `shown`.
-fn in_frame(upright: Rect, shown: Rect, orientation: Orientation) -> Rect {
-    let canvas = orientation.applied_to(shown.size());
-    let back = orientation.inverse();
-    let (x0, y0) = back.place(upright.x, upright.y, canvas);
-    let (x1, y1) = back.place(upright.right() - 1, upright.bottom() - 1, canvas);
-    Rect {
-        x: shown.x + x0.min(x1),
-        y: shown.y + y0.min(y1),
-        width: x0.abs_diff(x1) + 1,
-        height: y0.abs_diff(y1) + 1,
-    }
 }
 
 /// From places of the upright picture to those of what is shown of the frame.

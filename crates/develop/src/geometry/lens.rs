@@ -57,7 +57,7 @@ impl LensWarp {
     /// What is known of a lens whose picture lies at `shown` of the active area; `None` where it moves nothing.
     pub(super) fn known(corrections: Corrections, shown: Rect) -> Option<Self> {
         (corrections.has_distortion() || corrections.has_tca())
-            .then(|| Self::Measured { centre: middle(shown), corrections })
+            .then(|| Self::Measured { centre: shown.middle(), corrections })
     }
 
     /// Whether red, green and blue come from different places.
@@ -83,11 +83,6 @@ impl LensWarp {
             }
         }
     }
-}
-
-/// The middle of a rectangle.
-pub(super) fn middle(rect: Rect) -> [f64; 2] {
-    [rect.x as f64 + 0.5 * rect.width as f64, rect.y as f64 + 0.5 * rect.height as f64]
 }
 
 /// Where a point comes from, both in units of the reach from the centre.

@@ -16,6 +16,6 @@ mod warp;
 
 pub use asked::{Crop, Flip, Geometry, Lens, Resize, Turn};
 pub(crate) use lay::{Laid, lay};
-pub(crate) use resample::resample;
+pub(crate) use resample::{Scratch, resample};
 pub(crate) use vignetting::brighten;
 pub(crate) use warp::Warp;

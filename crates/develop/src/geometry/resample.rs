@@ -6,6 +6,18 @@ use darkroot_photo::{CameraSpace, Rect, Rgb};
 use super::taps::{GROUP, Taps};
 use super::warp::{Places, Warp};
 
+/// What the stage works in.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    /// Of the part of the frame: red, green, blue and nothing of each pixel.
+    pixels: Vec<f32>,
+    /// The same of what one place at an edge is made of.
+    patch: Vec<f32>,
+    /// Of a row of the picture: places, and what lies there.
+    places: Vec<[f64; 2]>,
+    found: Vec<f32>,
+}
+
 /// Makes `out` the part `rect` of the picture. `camera` holds `source`, the part of the frame that [`Warp::needs`] said.
 ///
 /// Light is averaged as it is, linear. No pixel leaves the range of those it is made of, so edges get no rims.
@@ -14,17 +26,20 @@ pub(crate) fn resample(
     (camera, source): (&Rgb<CameraSpace>, Rect),
     places: &Places,
     rect: Rect,
+    scratch: &mut Scratch,
     out: &mut Rgb<CameraSpace>,
 ) {
     out.resize(rect.size());
-    let mut work = Work { taps: &warp.taps, source, pixels: interleaved(camera), patch: Vec::new() };
-    let mut row = vec![[0.0; 2]; rect.width];
-    let mut found = vec![0f32; LANES * rect.width];
+    let Scratch { pixels, patch, places: row, found } = scratch;
+    interleave(camera, pixels);
+    row.resize(rect.width, [0.0; 2]);
+    found.resize(LANES * rect.width, 0.0);
+    let mut work = Work { taps: &warp.taps, source, pixels, patch };
     for y in 0..rect.height {
         let planes = out.planes_mut().map(|plane| &mut plane[y * rect.width..][..rect.width]);
         for channel in 0..places.channels() {
-            places.row(channel, rect.x, rect.y + y, &mut row);
-            work.row(&row, &mut found);
+            places.row(channel, rect.x, rect.y + y, row);
+            work.row(row, found);
             let channels = if places.channels() == 1 { 0..3 } else { channel..channel + 1 };
             for c in channels {
                 for (v, pixel) in planes[c].iter_mut().zip(found.chunks_exact(LANES)) {
@@ -38,16 +53,20 @@ pub(crate) fn resample(
 /// Numbers of a pixel: red, green, blue, and one that means nothing.
 const LANES: usize = 4;
 
-fn interleaved(picture: &Rgb<CameraSpace>) -> Vec<f32> {
+/// Puts the numbers of each pixel beside each other.
+fn interleave(picture: &Rgb<CameraSpace>, pixels: &mut Vec<f32>) {
     let [red, green, blue] = picture.planes();
-    red.iter().zip(green).zip(blue).flat_map(|((r, g), b)| [*r, *g, *b, 0.0]).collect()
+    pixels.resize(LANES * red.len(), 0.0);
+    for (((pixel, r), g), b) in pixels.chunks_exact_mut(LANES).zip(red).zip(green).zip(blue) {
+        pixel.copy_from_slice(&[*r, *g, *b, 0.0]);
+    }
 }
 
 struct Work<'a> {
     taps: &'a Taps,
     source: Rect,
-    pixels: Vec<f32>,
-    patch: Vec<f32>,
+    pixels: &'a [f32],
+    patch: &'a mut Vec<f32>,
 }
 
 impl Work<'_> {
@@ -74,7 +93,7 @@ impl Work<'_> {
             return mean(&self.pixels[LANES * begin..], LANES * self.source.width, (columns, rows), out);
         }
         self.copy_edge((left, columns.len()), (top, rows.len()));
-        mean(&self.patch, LANES * columns.len(), (columns, rows), out);
+        mean(self.patch, LANES * columns.len(), (columns, rows), out);
     }
 
     /// Copies pixels at an edge of the frame, beyond which its last ones go on.

@@ -23,13 +23,6 @@ pub(crate) struct Warp {
     pub(super) taps: Taps,
 }
 
-/// Where a correction of a lens is from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Source {
-    File,
-    Lensfun,
-}
-
 /// Where the pixels of a part of a picture come from, at a scale.
 #[derive(Debug)]
 pub(crate) struct Places {
@@ -51,12 +44,9 @@ impl Warp {
         ((of_frame as f64 / self.reduction.max(1.0)) as usize).max(1)
     }
 
-    /// Where its correction of a lens is from.
-    pub(super) fn corrects_as(&self) -> Option<Source> {
-        self.lens.first().map(|lens| match lens {
-            LensWarp::Dng { .. } => Source::File,
-            LensWarp::Measured { .. } => Source::Lensfun,
-        })
+    /// Whether it corrects a lens, and as the file says.
+    pub(super) fn corrects_as_the_file_says(&self) -> bool {
+        matches!(self.lens.first(), Some(LensWarp::Dng { .. }))
     }
 
     /// Whether red, green and blue of a place come from different ones.

@@ -81,8 +81,7 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, survey: &Survey) 
         return None;
     }
     let (area, shown) = (capture.active_area, capture.default_crop);
-    let middle = |begin: usize, length: usize| begin as f64 + 0.5 * length as f64;
-    let centre = [middle(shown.x, shown.width), middle(shown.y, shown.height)];
+    let centre = shown.middle();
     let reach = 0.5 * (shown.width as f64).hypot(shown.height as f64);
     let chosen = blocks::chosen(survey, (area.width, area.height));
     let phase = |filter: Filter| {
@@ -99,10 +98,8 @@ pub(crate) fn measured(capture: &Capture, light: &LinearLight, survey: &Survey) 
                 for (i, row) in samples.chunks_exact_mut(SIDE).enumerate() {
                     light.row(&capture.counts, block.x, block.y + i, row);
                 }
-                let from_centre = [
-                    (middle(block.x, SIDE) - centre[0]) / reach,
-                    (middle(block.y, SIDE) - centre[1]) / reach,
-                ];
+                let middle = block.middle();
+                let from_centre = [0, 1].map(|axis| (middle[axis] - centre[axis]) / reach);
                 phases.map(|phase| {
                     planes.of(samples, phase);
                     let shift = displaced(planes)?;
