@@ -1,9 +1,9 @@
 //! Lateral chromatic aberration, as the mosaic itself shows it: by how much red and blue lie beside green.
 //!
 //! A lens draws red and blue a little larger or smaller than green, so that every edge across the direction to the optical
-//! centre gets a coloured seam. In blocks with strong edges the displacement of red and of blue is measured ([`shift`]); a
+//! centre gets a coloured seam. In blocks with strong edges the displacement of red and of blue is measured (`shift.rs`); a
 //! function of the distance from the centre is fitted to all of them, and it counts only where parts of the picture that
-//! had no say in it bear it out ([`radial`]). Else nothing is known, and nothing is done.
+//! had no say in it bear it out (`radial.rs`). Else nothing is known, and nothing is done.
 
 mod align;
 mod blocks;
