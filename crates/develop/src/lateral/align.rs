@@ -4,7 +4,8 @@
 //! Red that belongs to green at x lies at x + d(x). Where there is a red sample, its difference to the green that belongs to
 //! it, at x - d(x), is what is smooth in most pictures (Cok, US patent 4642678, 1987, has the hue that way). These differences
 //! are interpolated at the right places and added to green. Green samples stay as they are, and where red is green there is
-//! nothing to interpolate.
+//! nothing to interpolate. What comes of it stays within the red samples around the place: green that is clipped, or a line too
+//! thin for its samples, differs from red by anything.
 
 use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Filter, Layout, Mosaic, Size};
@@ -25,6 +26,8 @@ pub(crate) struct Scratch {
     green: Vec<f32>,
     /// By colour, in every second column and row from its first one on.
     differences: Vec<f32>,
+    /// The samples themselves, likewise.
+    own: Vec<f32>,
 }
 
 /// What it asks of a tile.
@@ -54,9 +57,11 @@ pub(crate) fn align(
         }
         let sites = Sites { size, first, begin, lateral, colour };
         let columns = size.width.div_ceil(2);
-        let (green, differences) = (&scratch.green, &mut scratch.differences);
-        differences.clear();
-        differences.resize(columns * size.height.div_ceil(2), 0.0);
+        let (green, differences, own) = (&scratch.green, &mut scratch.differences, &mut scratch.own);
+        for plane in [&mut *differences, own] {
+            plane.clear();
+            plane.resize(columns * size.height.div_ceil(2), 0.0);
+        }
         let samples = &mut mosaic.samples;
         vectorised(
             #[inline(always)]
@@ -64,16 +69,18 @@ pub(crate) fn align(
                 sites.for_each_run(margins[0], |(x, y), count, [dx, dy]| {
                     let taps = Taps::of([-dx, -dy]);
                     for k in 0..count {
-                        let at = y * size.width + x + 2 * k;
-                        differences[y / 2 * columns + x / 2 + k] =
-                            samples[at] - taps.at(green, size.width, at);
+                        let (at, site) = (y * size.width + x + 2 * k, y / 2 * columns + x / 2 + k);
+                        own[site] = samples[at];
+                        differences[site] = samples[at] - taps.at(green, size.width, at);
                     }
                 });
                 sites.for_each_run(margins[1], |(x, y), count, [dx, dy]| {
                     let taps = Taps::of([0.5 * dx, 0.5 * dy]);
                     for k in 0..count {
-                        let at = y * size.width + x + 2 * k;
-                        samples[at] = green[at] + taps.at(differences, columns, y / 2 * columns + x / 2 + k);
+                        let (at, site) = (y * size.width + x + 2 * k, y / 2 * columns + x / 2 + k);
+                        let (least, most) = taps.range(own, columns, site);
+                        let sample = green[at] + taps.at(differences, columns, site);
+                        samples[at] = sample.max(least).min(most);
                     }
                 });
             },
@@ -150,6 +157,22 @@ impl Taps {
         let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.across[i] * sums[i]);
         (a + d) + (b + c)
     }
+
+    /// The smallest and the largest of the values that [`Self::at`] looks at.
+    #[inline(always)]
+    fn range(&self, values: &[f32], width: usize, at: usize) -> (f32, f32) {
+        let first = at as isize + self.left + self.top * width as isize;
+        let (mut least, mut most) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
+        for j in 0..4 {
+            let row = &values[first as usize + j * width..][..4];
+            for ((least, most), &v) in least.iter_mut().zip(&mut most).zip(row) {
+                *least = if v < *least { v } else { *least };
+                *most = if v > *most { v } else { *most };
+            }
+        }
+        let fold = |[a, b, c, d]: [f32; 4], of: fn(f32, f32) -> f32| of(of(a, b), of(c, d));
+        (fold(least, f32::min), fold(most, f32::max))
+    }
 }
 
 /// Green everywhere: at red and blue from the four along the row and along the column, by cubic interpolation; the more even
@@ -181,4 +204,48 @@ fn greens(samples: &[f32], size: Size, colours: [(usize, usize); 2], green: &mut
             }
         },
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use darkroot_photo::Cfa;
+
+    use super::super::Radial;
+    use super::*;
+
+    #[test]
+    fn no_red_is_invented_beside_green_that_is_clipped() {
+        let size = Size { width: 96, height: 80 };
+        let cfa = Cfa::parse("GRBG").unwrap();
+        // A dark twig, between whose reds green sees a sky that it clips.
+        let light = |x: usize, y: usize| {
+            let twig = (x + y / 5) % 11 == 0 || (3 * y + x) % 23 == 0;
+            match cfa.at(x, y) {
+                Filter::Red => [0.9, 0.4][usize::from(twig)],
+                Filter::Green => [1.0, 0.1][usize::from(twig)],
+                _ => [1.0, 0.3][usize::from(twig)],
+            }
+        };
+        let samples = (0..size.area()).map(|at| light(at % size.width, at / size.width)).collect();
+        let before = Mosaic { size, layout: Layout::Cfa(cfa.clone()), samples };
+        let lateral = Lateral {
+            centre: [48.0, -400.0],
+            reach: 400.0,
+            channels: [Some(Radial([1.3, 0.0, 0.0])), Some(Radial([-0.7, 0.0, 0.0]))],
+            most: 2,
+        };
+        let mut after = before.clone();
+        align(&mut after, (0, 0), &lateral, &mut Scratch::default());
+        let changed =
+            before.samples.iter().zip(&after.samples).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert!(changed > 200, "{changed}");
+        for (at, &sample) in after.samples.iter().enumerate() {
+            let range = match cfa.at(at % size.width, at / size.width) {
+                Filter::Red => 0.4..=0.9,
+                Filter::Green => 0.1..=1.0,
+                _ => 0.3..=1.0,
+            };
+            assert!(range.contains(&sample), "{at}: {sample}");
+        }
+    }
 }

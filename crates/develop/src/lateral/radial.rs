@@ -6,7 +6,7 @@ use super::shift::Shift;
 
 /// Displacement away from the centre over the distance from it: k0 + k1 r^2 + k2 r^4 pixels, r = 1 in the corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Radial([f64; 3]);
+pub(crate) struct Radial(pub(super) [f64; 3]);
 
 impl Radial {
     /// That, for a square of r.
