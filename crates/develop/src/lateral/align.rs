@@ -219,7 +219,7 @@ mod tests {
         let cfa = Cfa::parse("GRBG").unwrap();
         // A dark twig, between whose reds green sees a sky that it clips.
         let light = |x: usize, y: usize| {
-            let twig = (x + y / 5) % 11 == 0 || (3 * y + x) % 23 == 0;
+            let twig = (x + y / 5).is_multiple_of(11) || (3 * y + x).is_multiple_of(23);
             match cfa.at(x, y) {
                 Filter::Red => [0.9, 0.4][usize::from(twig)],
                 Filter::Green => [1.0, 0.1][usize::from(twig)],
