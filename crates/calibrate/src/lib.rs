@@ -37,6 +37,8 @@ pub use fit::{CalibrateError, Calibrated, calibrate};
 
 pub mod known_camera;
 
+pub mod delivery;
+
 pub mod judge;
 
 pub mod plot;
