@@ -41,6 +41,17 @@ pub fn block(metadata: &Metadata) -> Vec<u8> {
     }
 }
 
+/// When a finished picture says that it was taken ("2026:05:01 12:00:00"), from the bytes of its file; `None` where it does
+/// not say so.
+pub fn date_of(file: &[u8]) -> Option<String> {
+    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(file)).ok()?;
+    let field = exif.get_field(Tag::DateTimeOriginal, In::PRIMARY)?;
+    match &field.value {
+        exif::Value::Ascii(texts) => texts.first().and_then(|text| String::from_utf8(text.clone()).ok()),
+        _ => None,
+    }
+}
+
 /// The packet of XMP, where there is one. TIFF has a field for it; other formats have a place outside of Exif.
 pub(crate) fn xmp(metadata: &Metadata) -> &[u8] {
     let packet = metadata.fields().iter().find(|field| is_xmp(field)).map(|field| &field.value);

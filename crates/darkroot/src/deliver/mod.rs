@@ -73,6 +73,8 @@ pub struct JudgedPicture {
     pub has_tables: bool,
     /// Bits of a sample.
     pub bits: u16,
+    /// Day of the shot, YYYY-MM-DD, where the picture tells.
+    pub date: Option<String>,
     /// The light that it was judged under.
     pub light: LightSource,
     /// How that is known.
@@ -148,6 +150,7 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         is_tagged: opened.is_tagged,
         has_tables: opened.has_tables,
         bits: opened.bits,
+        date: opened.date,
         light,
         light_from,
         corners: place.corners,
@@ -170,6 +173,7 @@ pub(crate) struct Opened {
     is_tagged: bool,
     has_tables: bool,
     bits: u16,
+    date: Option<String>,
     /// The light that its colours are those of.
     says: Option<LightSource>,
 }
@@ -177,7 +181,10 @@ pub(crate) struct Opened {
 impl Opened {
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         let of_profile = |fault| Error::chart(path, ChartError::SourceProfile(fault));
-        let encoded = rendered::encoded(path, &files::read(path)?)?;
+        let bytes = files::read(path)?;
+        let date = darkroot_encode::exif::date_of(&bytes).and_then(|text| crate::naming::date(&text));
+        let encoded = rendered::encoded(path, &bytes)?;
+        drop(bytes);
         let profile = match &encoded.icc {
             Some(bytes) => SourceProfile::read(bytes).map_err(of_profile)?,
             None => SourceProfile::srgb(),
@@ -191,6 +198,7 @@ impl Opened {
             is_tagged: encoded.icc.is_some(),
             has_tables: profile.has_tables(),
             bits: encoded.bits,
+            date,
             says: encoded.xmp.as_deref().and_then(provenance::light_in),
         })
     }

@@ -1,5 +1,6 @@
 //! The report on a profile: one HTML page with everything in it, nothing from the network.
 
+pub mod delivered;
 mod plots;
 mod shown;
 mod tables;
