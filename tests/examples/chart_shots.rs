@@ -35,7 +35,12 @@ fn run(arguments: &[String]) -> Result<(), Box<dyn std::error::Error>> {
     let camera = Camera { sensitivities: sensitivities.0, ..Camera::simulated_one() };
     let patches = spectra::read(Path::new(reflectances))?.reflectances();
     if patches.len() != layout.patches.len() {
-        return Err(format!("{reflectances} has {} spectra, the chart {}", patches.len(), layout.patches.len()).into());
+        return Err(format!(
+            "{reflectances} has {} spectra, the chart {}",
+            patches.len(),
+            layout.patches.len()
+        )
+        .into());
     }
     // Patches of 76 pixels, five degrees from the rows.
     let (columns, rows) = (88.0 * layout.columns as f64, 88.0 * layout.rows as f64);
@@ -48,7 +53,10 @@ fn run(arguments: &[String]) -> Result<(), Box<dyn std::error::Error>> {
     let out = Path::new(out);
     std::fs::create_dir_all(out)?;
     let write = |name: &str, scene: &Scene| {
-        std::fs::write(out.join(name), dng::write(&expose(scene, &camera, &exposure), dng::Storage::Uncompressed))
+        std::fs::write(
+            out.join(name),
+            dng::write(&expose(scene, &camera, &exposure), dng::Storage::Uncompressed),
+        )
     };
     write("chart.dng", &scene)?;
     write("flat.dng", &Scene::flat(size, Spectrum::constant(0.5)))?;

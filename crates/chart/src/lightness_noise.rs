@@ -37,7 +37,8 @@ mod tests {
         // L* 49 and 51 in a chequerboard.
         let y = |l: f64| ((l + 16.0f64) / 116.0).powi(3) as f32;
         let size = Size { width: 20, height: 20 };
-        let samples = (0..400).flat_map(|i| [y(if (i + i / 20) % 2 == 0 { 49.0 } else { 51.0 }); 3]).collect();
+        let samples =
+            (0..400).flat_map(|i| [y(if (i + i / 20) % 2 == 0 { 49.0 } else { 51.0 }); 3]).collect();
         let light = Mosaic { size, layout: Layout::Rgb, samples };
         let window = [[2.0, 2.0], [17.0, 2.0], [17.0, 17.0], [2.0, 17.0]];
         let noise = lightness_noise(&light, [0.25, 0.5, 0.25], &[window]);

@@ -76,7 +76,13 @@ struct Strip<'a> {
     beside: f64,
 }
 
-fn response(light: &Mosaic<f32>, luminance: [f64; 3], quad: &Quad, side: usize, gap: f64) -> Option<EdgeResponse> {
+fn response(
+    light: &Mosaic<f32>,
+    luminance: [f64; 3],
+    quad: &Quad,
+    side: usize,
+    gap: f64,
+) -> Option<EdgeResponse> {
     let strip = Strip::of(light, quad, side, gap)?;
     let seen = |rgb: [f64; 3]| (0..3).map(|c| luminance[c] * rgb[c]).sum::<f64>();
     let line = strip.line(&seen)?;
@@ -268,7 +274,9 @@ mod tests {
     fn normal(v: f64) -> f64 {
         let x = v.abs() / 2f64.sqrt();
         let t = 1.0 / (1.0 + 0.327_591_1 * x);
-        let series = t * (0.254_829_592 + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
+        let series = t
+            * (0.254_829_592
+                + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
         let half = 0.5 * (1.0 - series * (-x * x).exp());
         if v < 0.0 { 0.5 - half } else { 0.5 + half }
     }
@@ -301,7 +309,11 @@ mod tests {
                 for i in 0..=100 {
                     let f = i as f64 / 200.0;
                     let truth = (-2.0 * (PI * sigma * f).powi(2)).exp();
-                    assert!((edge.response[i] - truth).abs() < 0.025, "{sigma} at {f}: {} {truth}", edge.response[i]);
+                    assert!(
+                        (edge.response[i] - truth).abs() < 0.025,
+                        "{sigma} at {f}: {} {truth}",
+                        edge.response[i]
+                    );
                 }
                 let half = (2f64.ln() / 2.0).sqrt() / (PI * sigma);
                 assert!((edge.falls_to(0.5) - half).abs() < 0.01, "{sigma}: {} {half}", edge.falls_to(0.5));

@@ -18,10 +18,6 @@ pub(crate) struct Sandbox {
 }
 
 impl Sandbox {
-    pub(crate) fn on() -> Self {
-        Self { no_sandbox: false }
-    }
-
     pub(crate) fn is_on(self) -> bool {
         !self.no_sandbox
     }

@@ -130,7 +130,9 @@ pub enum ChartError {
     #[error("{0}")]
     SourceProfile(#[from] darkroot_encode::ProfileFault),
     /// A finished picture of another light than the one that was named.
-    #[error("says of itself that its colours are those under {says}, not under {named}; name the light that it was taken in")]
+    #[error(
+        "says of itself that its colours are those under {says}, not under {named}: judge it under that light"
+    )]
     OtherLight {
         /// What it says.
         says: String,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use darkroot_calibrate::shot::{Chart, Companions};
-use darkroot_calibrate::white_of;
+use darkroot_calibrate::{MeasuredPatch, white_of, white_under};
 use darkroot_chart::{ChartLayout, Rejected};
 use darkroot_colour::white;
 use darkroot_develop::{Balance, Plan};
@@ -12,6 +12,7 @@ use darkroot_photo::{Camera, Capture};
 
 use crate::charts::NamedReference;
 use crate::fault::ChartError;
+use crate::light::LightSource;
 use crate::photo::Photo;
 use crate::settings::{ChartShot, FromChart, Settings};
 use crate::shot::{self, Correct, Shot, ShotOptions, View, common_name};
@@ -43,6 +44,7 @@ pub(crate) struct Told {
     neutral: [f64; 3],
     /// Camera RGB where no light comes from, where that is to be taken off.
     pub(crate) veil: [f64; 3],
+    patches: Vec<MeasuredPatch>,
     camera: Camera,
     /// Light that the settings of the camera let in, relative.
     exposure: Option<f64>,
@@ -70,7 +72,7 @@ pub(crate) fn of_photo(path: &Path, photo: &Photo, asked: &FromChart) -> Result<
     let (shot, chart, reference) = measured(path, &view, asked)?;
     let of_chart = |fault| Error::chart(path, fault);
     let usable = shot.patches.iter().zip(&shot.measurements).filter(|(patch, _)| patch.excluded.is_none());
-    let luminance = |patch: &darkroot_calibrate::MeasuredPatch| patch.reference.xyz_d50().y;
+    let luminance = |patch: &MeasuredPatch| patch.reference.xyz_d50().y;
     let brightest = usable.max_by(|(a, _), (b, _)| luminance(a).total_cmp(&luminance(b)));
     let (patch, measurement) = brightest.ok_or_else(|| of_chart(ChartError::DarkGreys))?;
     let neutral = white_of(&shot.patches).map_err(|_| of_chart(ChartError::DarkGreys))?;
@@ -90,6 +92,7 @@ pub(crate) fn of_photo(path: &Path, photo: &Photo, asked: &FromChart) -> Result<
         // The slope of light is left in, so what is missing of a patch is the veil.
         veil: [0, 1, 2].map(|c| measurement.mean[c] - patch.rgb[c]),
         camera: shot.camera,
+        patches: shot.patches,
         exposure: exposure_of(photo.capture()),
     })
 }
@@ -101,10 +104,12 @@ fn measured(path: &Path, view: &View, asked: &FromChart) -> Result<(Shot, String
         None => charts::layouts().into_iter().filter(|l| charts::reference(None, l).is_ok()).collect(),
     };
     let search = find_chart::search(view, &layouts);
-    let found = search.found.first().and_then(|f| layouts.iter().find(|l| l.name == f.layout).map(|l| (f, l)));
+    let found =
+        search.found.first().and_then(|f| layouts.iter().find(|l| l.name == f.layout).map(|l| (f, l)));
     let Some((found, layout)) = found else {
         let reason = search.rejected.map(|Rejected { reason, .. }| reason);
-        let chart = layouts.first().filter(|_| layouts.len() == 1).map_or("chart".to_owned(), |l| l.title.clone());
+        let chart =
+            layouts.first().filter(|_| layouts.len() == 1).map_or("chart".to_owned(), |l| l.title.clone());
         return Err(Error::chart(path, ChartError::NotFound { chart, reason }));
     };
     let reference = charts::reference(asked.reference.as_deref(), layout)?;
@@ -127,9 +132,11 @@ fn exposure_of(capture: &Capture) -> Option<f64> {
 }
 
 impl Told {
-    /// White-balance multipliers by the greys.
-    pub(crate) fn balance(&self) -> Balance {
-        Balance::Multipliers(self.neutral.map(|v| self.neutral[1] / v))
+    /// White-balance multipliers by the greys, as they are in a light; as under D50 where that is not known.
+    pub(crate) fn balance(&self, light: Option<&LightSource>) -> Balance {
+        let under = light.and_then(|light| white_under(&self.patches, light).ok());
+        let neutral = under.unwrap_or(self.neutral);
+        Balance::Multipliers(neutral.map(|v| neutral[1] / v))
     }
 
     /// Whether a photograph may be exposed by this shot.

@@ -49,7 +49,8 @@ pub(crate) fn packet(known: &Known<'_>) -> String {
     fields.push(("Exposure", format!("{:.5}", known.plan.gain)));
     fields.push(("Settings", settings_in_words(known.settings)));
     let lines = fields.iter().filter(|(_, value)| !value.is_empty());
-    let lines: String = lines.map(|(name, value)| format!("\n   darkroot:{name}=\"{}\"", escaped(value))).collect();
+    let lines: String =
+        lines.map(|(name, value)| format!("\n   darkroot:{name}=\"{}\"", escaped(value))).collect();
     format!(
         "<?xpacket begin=\"\u{feff}\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n\
          <x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n \
@@ -69,20 +70,26 @@ fn hash_of(chosen: &ChosenProfile<'_>) -> String {
 
 /// The light that the colours are for: the one that was named, the profile's where the white is near to it, or what the
 /// white tells.
-fn light_of(settings: &Settings, profile: Option<&Profile>, plan: &Plan) -> Option<String> {
+pub(crate) fn light_of(settings: &Settings, profile: Option<&Profile>, plan: &Plan) -> Option<String> {
     if let Some(light) = &settings.light {
         return Some(light.light.name.clone());
     }
     let white = plan.white?;
     let away = |kelvin: f64| (1e6 / kelvin - 1e6 / white.kelvin).abs();
     let calibrations = profile.map(Profile::calibrations).unwrap_or_default();
-    let nearest = calibrations.iter().min_by(|a, b| away(a.light.kelvin()).total_cmp(&away(b.light.kelvin())));
+    let nearest =
+        calibrations.iter().min_by(|a, b| away(a.light.kelvin()).total_cmp(&away(b.light.kelvin())));
     let named = nearest.filter(|c| away(c.light.kelvin()) <= NEAR && c.light.kelvin() > 0.0);
     Some(named.map_or_else(|| in_kelvin(white), |c| c.light.name.clone()))
 }
 
 fn in_kelvin(white: Temperature) -> String {
     format!("{:.0} K", white.kelvin)
+}
+
+/// The light of a name as [`light_of`] gives it.
+pub(crate) fn by_name(name: &str) -> Option<LightSource> {
+    LightSource::by_name(&name.replace(" K", "K"))
 }
 
 /// Name and text of every setting that was asked for; of files the name alone.
@@ -126,7 +133,7 @@ pub(crate) fn light_in(packet: &[u8]) -> Option<LightSource> {
         let is_light = node.has_tag_name((NAMESPACE, "Light"));
         node.attribute((NAMESPACE, "Light")).or_else(|| is_light.then(|| node.text()).flatten())
     })?;
-    LightSource::by_name(&name.replace(" K", "K"))
+    by_name(name)
 }
 
 #[cfg(test)]
@@ -138,7 +145,8 @@ mod tests {
         let packet = |inner: &str| {
             format!("<x:xmpmeta xmlns:x=\"adobe:ns:meta/\" xmlns:d=\"{NAMESPACE}\">{inner}</x:xmpmeta>")
         };
-        let kelvin = |inner: &str| light_in(packet(inner).as_bytes()).map(|light| light.light.kelvin().round());
+        let kelvin =
+            |inner: &str| light_in(packet(inner).as_bytes()).map(|light| light.light.kelvin().round());
         assert_eq!(kelvin("<a d:Light=\"A\"/>"), Some(2856.0));
         assert_eq!(kelvin("<a><d:Light>3200 K</d:Light></a>"), Some(3200.0));
         assert_eq!(kelvin("<a d:Light=\"moonshine\"/>"), None);

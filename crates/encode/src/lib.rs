@@ -56,6 +56,8 @@ pub use output::Out;
 pub mod exif;
 pub mod icc;
 
+pub mod tiff_field;
+
 pub mod source_profile;
 pub use source_profile::{ProfileFault, SourceProfile};
 

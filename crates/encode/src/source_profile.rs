@@ -1,29 +1,30 @@
 //! The ICC profile that a finished picture carries, ours or anyone's: from the numbers of the picture to colours.
 //!
 //! A profile of colorants and curves (ICC.1:2022, 8.3) is evaluated here, exactly for samples of 8 and 16 bits; one with
-//! tables (8.2: `A2B1`, else `A2B0`) by moxcms. Either way the result is relative to the white of the medium, which becomes
+//! tables (8.2: `A2B1`, else `A2B0`) by interpolation in them; moxcms reads both. Either way the result is relative to the white of the medium, which becomes
 //! D50, as relative colorimetric rendering has it.
 
+use darkroot_colour::Vector3;
 use darkroot_colour::{RgbSpace, white};
-use moxcms::{
-    ColorProfile, DataColorSpace, Layout, ParsingOptions, ProfileText, RenderingIntent, ToneReprCurve,
-    TransformExecutor, TransformOptions,
-};
+use moxcms::{ColorProfile, DataColorSpace, ParsingOptions, ProfileText, ToneReprCurve};
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::panic::catch_unwind;
 
-use crate::icc;
+use tables::Tables;
+
+mod tables;
 
 /// The largest profile that is read, bytes, and the largest table in one.
 const LARGEST: usize = 16 << 20;
 /// Numbers that a curve is evaluated at: all that 16 bits have.
 const LEVELS: usize = 1 << 16;
+/// What is said where the library gave up.
+const PANIC: &str = "the library for profiles gave up";
 /// Pixels that are converted together.
 const RUN: usize = 4096;
 
 /// The space that pictures are converted to: linear, with D50 as its white, and wide.
-pub const LINEAR: RgbSpace =
-    RgbSpace { curve: darkroot_colour::TransferCurve::Linear, ..RgbSpace::PROPHOTO };
+pub const LINEAR: RgbSpace = RgbSpace { curve: darkroot_colour::TransferCurve::Linear, ..RgbSpace::PROPHOTO };
 
 /// Why a profile cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -49,8 +50,8 @@ pub struct SourceProfile {
 enum Way {
     /// Curves of red, green and blue, and the matrix to [`LINEAR`].
     Matrix { curves: [Vec<f32>; 3], matrix: [[f32; 3]; 3] },
-    /// Tables, which need a colour management module.
-    Tables(Arc<dyn TransformExecutor<f32> + Send + Sync>),
+    /// Tables.
+    Tables(Box<Tables>),
 }
 
 impl SourceProfile {
@@ -59,6 +60,11 @@ impl SourceProfile {
     /// # Errors
     /// One that is broken, larger than 16 MiB, not for RGB, or tells no colours.
     pub fn read(bytes: &[u8]) -> Result<Self, ProfileFault> {
+        // Whoever made the profile may have found what the library did not think of.
+        catch_unwind(|| Self::parsed(bytes)).unwrap_or_else(|_| Err(ProfileFault::Broken(PANIC.to_owned())))
+    }
+
+    fn parsed(bytes: &[u8]) -> Result<Self, ProfileFault> {
         let broken = |e: &dyn std::fmt::Display| ProfileFault::Broken(e.to_string());
         if bytes.len() > LARGEST {
             return Err(broken(&"it is larger than 16 MiB"));
@@ -68,16 +74,13 @@ impl SourceProfile {
             max_allowed_clut_size: LARGEST / 2,
             max_allowed_trc_size: LEVELS,
         };
-        let profile =
-            ColorProfile::new_from_slice_with_options(bytes, options).map_err(|e| broken(&e))?;
+        let profile = ColorProfile::new_from_slice_with_options(bytes, options).map_err(|e| broken(&e))?;
         if profile.color_space != DataColorSpace::Rgb {
             return Err(ProfileFault::Space(format!("{:?}", profile.color_space)));
         }
-        let tables = [&profile.lut_a_to_b_colorimetric, &profile.lut_a_to_b_perceptual];
-        let way = if tables.iter().any(|table| table.is_some()) {
-            tables_of(&profile).map_err(|e| broken(&e))?
-        } else {
-            matrix_of(&profile)?
+        let way = match Tables::of(&profile)? {
+            Some(tables) => Way::Tables(Box::new(tables)),
+            None => matrix_of(&profile)?,
         };
         Ok(Self { description: description(&profile), way })
     }
@@ -85,9 +88,8 @@ impl SourceProfile {
     /// What pictures without a profile are taken for.
     pub fn srgb() -> Self {
         let matrix = to_linear(&RgbSpace::SRGB.to_xyz_under(white::D50));
-        let curve: Vec<f32> = (0..LEVELS)
-            .map(|i| RgbSpace::SRGB.curve.decode(i as f64 / (LEVELS - 1) as f64) as f32)
-            .collect();
+        let curve: Vec<f32> =
+            (0..LEVELS).map(|i| RgbSpace::SRGB.curve.decode(i as f64 / (LEVELS - 1) as f64) as f32).collect();
         let curves = [curve.clone(), curve.clone(), curve];
         Self { description: RgbSpace::SRGB.name.to_owned(), way: Way::Matrix { curves, matrix } }
     }
@@ -103,10 +105,7 @@ impl SourceProfile {
     }
 
     /// R, G, B of pixels side by side, 0..=1 as they are encoded, to [`LINEAR`], in place.
-    ///
-    /// # Errors
-    /// A profile whose tables cannot be evaluated.
-    pub fn linearise(&self, samples: &mut [f32]) -> Result<(), ProfileFault> {
+    pub fn linearise(&self, samples: &mut [f32]) {
         match &self.way {
             Way::Matrix { curves, matrix } => {
                 samples.par_chunks_mut(3 * RUN).for_each(|run| {
@@ -117,12 +116,19 @@ impl SourceProfile {
                         }
                     }
                 });
-                Ok(())
             }
-            Way::Tables(transform) => samples.par_chunks_mut(3 * RUN).try_for_each(|run| {
-                let encoded: Vec<f32> = run.iter().map(|v| v.clamp(0.0, 1.0)).collect();
-                transform.transform(&encoded, run).map_err(|e| ProfileFault::Broken(e.to_string()))
-            }),
+            Way::Tables(tables) => {
+                let from_xyz = LINEAR.from_xyz_under(white::D50);
+                samples.par_chunks_mut(3 * RUN).for_each(|run| {
+                    for pixel in run.chunks_exact_mut(3) {
+                        let xyz = tables.xyz([pixel[0], pixel[1], pixel[2]]);
+                        let linear = from_xyz * Vector3::from(xyz);
+                        for (out, v) in pixel.iter_mut().zip(linear.iter()) {
+                            *out = *v as f32;
+                        }
+                    }
+                });
+            }
         }
     }
 }
@@ -156,84 +162,16 @@ fn matrix_of(profile: &ColorProfile) -> Result<Way, ProfileFault> {
     Ok(Way::Matrix { curves, matrix: to_linear(&to_xyz) })
 }
 
-fn tables_of(profile: &ColorProfile) -> Result<Way, moxcms::CmsError> {
-    let target = ColorProfile::new_from_slice(&icc::profile(&LINEAR))?;
-    let options = TransformOptions {
-        rendering_intent: RenderingIntent::RelativeColorimetric,
-        prefer_fixed_point: false,
-        ..TransformOptions::default()
-    };
-    Ok(Way::Tables(profile.create_transform_f32(Layout::Rgb, &target, Layout::Rgb, options)?))
-}
-
 fn description(profile: &ColorProfile) -> String {
     match &profile.description {
         Some(ProfileText::PlainString(text)) => text.clone(),
-        Some(ProfileText::Localizable(texts)) => texts.first().map_or(String::new(), |text| text.value.clone()),
+        Some(ProfileText::Localizable(texts)) => {
+            texts.first().map_or(String::new(), |text| text.value.clone())
+        }
         Some(ProfileText::Description(text)) => text.ascii_string.clone(),
         None => String::new(),
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::spaces;
-    use darkroot_colour::Vector3;
-
-    #[test]
-    fn colours_of_our_own_profiles_come_back() {
-        let to_xyz = LINEAR.to_xyz_under(white::D50);
-        for space in spaces() {
-            let profile = SourceProfile::read(&icc::profile(&space)).unwrap();
-            assert!(!profile.has_tables() && profile.description().starts_with(space.name), "{}", space.name);
-            for linear in [[1.0, 1.0, 1.0], [0.5, 0.2, 0.1], [0.01, 0.9, 0.3], [0.0, 0.0, 0.0]] {
-                let truth = space.to_xyz_under(white::D50) * Vector3::from(linear);
-                let mut pixel = linear.map(|v| space.curve.encode(v) as f32);
-                profile.linearise(&mut pixel).unwrap();
-                let found = to_xyz * Vector3::from(pixel.map(f64::from));
-                // Sixteen bits of a linear space are the coarsest.
-                assert!((found - truth).amax() < 1e-4, "{}: {found} {truth}", space.name);
-            }
-        }
-    }
-
-    #[test]
-    fn a_picture_without_a_profile_is_srgb() {
-        let read = SourceProfile::read(&icc::profile(&RgbSpace::SRGB)).unwrap();
-        let (mut one, mut other) = ([0.2f32, 0.5, 0.9], [0.2f32, 0.5, 0.9]);
-        read.linearise(&mut one).unwrap();
-        SourceProfile::srgb().linearise(&mut other).unwrap();
-        assert!(one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-4), "{one:?} {other:?}");
-    }
-
-    #[test]
-    fn broken_profiles_are_errors_and_never_panics() {
-        let good = icc::profile(&RgbSpace::ECIRGB_V2);
-        assert!(SourceProfile::read(b"").is_err() && SourceProfile::read(b"no profile").is_err());
-        for length in 0..good.len() {
-            let _ = SourceProfile::read(&good[..length]);
-        }
-        let mut state = 7u32;
-        for _ in 0..2000 {
-            let mut bytes = good.clone();
-            for _ in 0..3 {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                let at = (state >> 8) as usize % bytes.len();
-                bytes[at] = state as u8;
-            }
-            if let Ok(profile) = SourceProfile::read(&bytes) {
-                let mut pixels = [0.0f32, 0.5, 1.0, f32::NAN, -1.0, 2.0];
-                let _ = profile.linearise(&mut pixels);
-            }
-        }
-    }
-
-    #[test]
-    fn a_profile_of_another_kind_is_refused_in_words() {
-        let mut grey = icc::profile(&RgbSpace::SRGB);
-        grey[16..20].copy_from_slice(b"GRAY");
-        let words = SourceProfile::read(&grey).err().unwrap().to_string();
-        assert!(words.contains("Gray") && words.contains("RGB space"), "{words}");
-    }
-}
+mod tests;

@@ -88,7 +88,8 @@ impl Guideline {
 
 /// The guideline and the level of a preset.
 pub fn preset(name: &str) -> Option<(&'static Guideline, usize)> {
-    let levels = |g: &'static Guideline| g.levels.iter().position(|l| l.preset == name).map(|level| (g, level));
+    let levels =
+        |g: &'static Guideline| g.levels.iter().position(|l| l.preset == name).map(|level| (g, level));
     GUIDELINES.iter().find_map(levels)
 }
 
@@ -115,7 +116,8 @@ const fn level(name: &'static str, preset: &'static str) -> Level {
 const COMPARED: &str =
     "secondary: comparison of FADGI 2023, ISO 19264-1:2021 and Metamorfoze 2.0 (draft) at skandalski.pl";
 const VERSION_2: &str = "secondary: draft of June 2023 at preservationimaging.com";
-const FADGI_2010: &str = "secondary: FADGI 2010 in translation at gxnsmy.com; the numbers of 2023 were not at hand";
+const FADGI_2010: &str =
+    "secondary: FADGI 2010 in translation at gxnsmy.com; the numbers of 2023 were not at hand";
 
 /// All guidelines.
 pub const GUIDELINES: [Guideline; 3] = [
@@ -173,7 +175,11 @@ pub const GUIDELINES: [Guideline; 3] = [
             row(Metric::ColourMax, &[most(7.0), most(14.0), None], VERSION_2),
             row(Metric::Tone, &[most(2.0), most(2.0), most(4.0)], COMPARED),
             row(Metric::WhiteBalance, &[most(3.0), most(3.0), most(5.0)], VERSION_2),
-            row(Metric::GainHighlights, &[between(0.8, 1.1), between(0.8, 1.1), between(0.8, 1.1)], VERSION_2),
+            row(
+                Metric::GainHighlights,
+                &[between(0.8, 1.1), between(0.8, 1.1), between(0.8, 1.1)],
+                VERSION_2,
+            ),
             row(Metric::GainOther, &[between(0.7, 1.2), between(0.7, 1.2), between(0.6, 1.3)], COMPARED),
             row(Metric::Noise, &[most(1.6), most(1.6), most(2.0)], COMPARED),
             row(Metric::SamplingEfficiency, &[least(85.0), None, None], COMPARED),

@@ -131,7 +131,14 @@ mod tests {
 
     /// Patches of a chart whose XYZ are their `rgb`, changed in L*.
     fn delivered(change: impl Fn(f64) -> f64) -> Delivery {
-        let labs = [(95.0, 0.0, 1.0), (81.0, 0.0, 0.0), (66.0, 0.0, 0.0), (50.0, 0.5, 0.0), (35.0, 0.0, 0.0), (40.0, 50.0, 30.0)];
+        let labs = [
+            (95.0, 0.0, 1.0),
+            (81.0, 0.0, 0.0),
+            (66.0, 0.0, 0.0),
+            (50.0, 0.5, 0.0),
+            (35.0, 0.0, 0.0),
+            (40.0, 50.0, 30.0),
+        ];
         let patch = |(i, (l, a, b)): (usize, &(f64, f64, f64))| {
             let truth = Lab { l: *l, a: *a, b: *b };
             let found = Lab { l: change(*l), ..truth }.xyz(white::D50);
@@ -154,7 +161,8 @@ mod tests {
         let found = delivered(|l| l);
         assert!(found.de2000.max < 1e-6 && found.greys.len() == 5 && found.notes.is_empty());
         assert!(found.steps.iter().all(|step| (step.gain - 1.0).abs() < 1e-6));
-        let best = |name: &str| preset(name).map(|(guideline, level)| guideline.verdicts(level, &found)).unwrap();
+        let best =
+            |name: &str| preset(name).map(|(guideline, level)| guideline.verdicts(level, &found)).unwrap();
         for name in ["fadgi-4star", "iso19264-a", "metamorfoze-full"] {
             assert!(best(name).iter().all(|verdict| verdict.kept() != Some(false)), "{name}");
         }

@@ -60,7 +60,12 @@ pub(super) fn greys<'a>(patches: impl Iterator<Item = (&'a JudgedPatch, &'a f64)
     let grey = |(patch, noise): (&JudgedPatch, &f64)| {
         let truth = patch.reference.lab(white::D50);
         let found = patch.corrected.lab(white::D50);
-        (truth.a.hypot(truth.b) <= GREY).then(|| Grey { name: patch.name.clone(), found, truth, noise: *noise })
+        (truth.a.hypot(truth.b) <= GREY).then(|| Grey {
+            name: patch.name.clone(),
+            found,
+            truth,
+            noise: *noise,
+        })
     };
     let mut greys: Vec<Grey> = patches.filter_map(grey).collect();
     greys.sort_by(|a, b| b.truth.l.total_cmp(&a.truth.l));
@@ -80,7 +85,8 @@ pub(super) fn steps(greys: &[Grey]) -> Vec<Step> {
             _ => levels.push((grey.truth.l, grey.found.l, 1.0)),
         }
     }
-    let levels: Vec<[f64; 2]> = levels.iter().map(|(truth, found, count)| [truth / count, found / count]).collect();
+    let levels: Vec<[f64; 2]> =
+        levels.iter().map(|(truth, found, count)| [truth / count, found / count]).collect();
     let step = |pair: &[[f64; 2]]| {
         let ([light, light_found], [dark, dark_found]) = (pair[0], pair[1]);
         Step { lightness: (light + dark) / 2.0, gain: (light_found - dark_found) / (light - dark) }

@@ -52,6 +52,24 @@ impl Metric {
         }
     }
 
+    /// What it is called where there is little room.
+    pub fn short(self) -> &'static str {
+        match self {
+            Self::ColourMean => "mean",
+            Self::ColourMax => "largest",
+            Self::ColourP90 => "90 %",
+            Self::Tone => "tone",
+            Self::WhiteBalance => "white",
+            Self::GainHighlights => "gain in highlights",
+            Self::GainOther => "gain elsewhere",
+            Self::Noise => "noise",
+            Self::SamplingEfficiency => "sampling",
+            Self::Sharpening => "sharpening",
+            Self::Misregistration => "registration",
+            Self::Illumination => "illumination",
+        }
+    }
+
     /// What it takes to be measured, where a shot of a chart alone may not do.
     pub fn needs(self) -> &'static str {
         match self {

@@ -119,7 +119,9 @@ impl ShotArgs {
     /// A request for finished pictures. What only a shot of the sensor can have is refused.
     pub(crate) fn delivery(&self, light: Option<LightSource>) -> Result<DeliveryRequest> {
         if self.dark.is_some() || self.even_out.is_some() || self.correct_glare.is_some() {
-            bail!("`--dark`, `--even-out` and `--correct-glare` are for raw shots: a finished picture is judged as it is");
+            bail!(
+                "`--dark`, `--even-out` and `--correct-glare` are for raw shots: a finished picture is judged as it is"
+            );
         }
         let layout = charts::layout(&self.chart)?;
         let reference = charts::reference(self.reference.as_deref(), &layout)?;

@@ -13,7 +13,7 @@ use darkroot::verify::{LogLine, Outcome as Judged, append};
 use darkroot::{Error, shown, write_text};
 
 use super::Verify;
-use crate::sandbox::{self, Sandbox};
+use crate::sandbox;
 use crate::{Common, Outcome};
 
 /// Most pictures of a folder.
@@ -50,7 +50,10 @@ pub(super) fn pictures(inputs: &[PathBuf]) -> Result<Option<Pictures>> {
         [first, ..] if is_picture(first) => {
             let other = inputs.iter().find(|path| !is_picture(path));
             match other {
-                Some(other) => bail!("{}: is no finished picture; judge raw shots by a profile, one at a time", shown(other)),
+                Some(other) => bail!(
+                    "{}: is no finished picture; judge raw shots by a profile, one at a time",
+                    shown(other)
+                ),
                 None => Ok(Some(Pictures { files: inputs.to_vec(), found: false })),
             }
         }
@@ -127,11 +130,10 @@ impl Verify {
 
     /// Gives up everything but the pictures and what is written, before the first of them is read.
     fn confine(&self, pictures: &Pictures, request: &DeliveryRequest, common: Common) -> Result<()> {
-        let sandbox = Sandbox::on();
-        sandbox.say(common);
+        self.sandbox.say(common);
         let reach = sandbox::reading(pictures.files.iter().chain(&request.flat));
         let outputs = self.report.iter().chain(&self.log);
-        sandbox.confine(&outputs.fold(reach, |reach, output| sandbox::writing(reach, output)))
+        self.sandbox.confine(&outputs.fold(reach, |reach, output| sandbox::writing(reach, output)))
     }
 
     /// The guideline and level that are asked for.
@@ -154,8 +156,12 @@ impl Verify {
     }
 
     fn asked_in_words(&self) -> Option<String> {
-        let name = self.asked().map(|(guideline, level)| format!("{}, {}", guideline.name, guideline.levels[level].name));
-        name.or_else(|| (self.max_mean.is_some() || self.max.is_some()).then(|| "the limits that were given".to_owned()))
+        let name = self
+            .asked()
+            .map(|(guideline, level)| format!("{}, {}", guideline.name, guideline.levels[level].name));
+        name.or_else(|| {
+            (self.max_mean.is_some() || self.max.is_some()).then(|| "the limits that were given".to_owned())
+        })
     }
 
     /// What a person is told of a picture.
@@ -168,8 +174,11 @@ impl Verify {
             "  dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2} (SL = 1: mean {:.2}, max {:.2})",
             s.mean, s.median, s.p95, s.max, sl1.mean, sl1.max
         ));
-        let greys: Vec<String> =
-            delivery.greys.iter().map(|g| format!("{:.1} ({:+.2})", g.found.l, g.lightness_error())).collect();
+        let greys: Vec<String> = delivery
+            .greys
+            .iter()
+            .map(|g| format!("{:.1} ({:+.2})", g.found.l, g.lightness_error()))
+            .collect();
         crate::say(format_args!("  greys, L* (error): {}", greys.join(", ")));
         if let Some(edges) = delivery.details.edges {
             crate::say(format_args!(
@@ -187,11 +196,11 @@ impl Verify {
             let levels: Vec<String> = guideline
                 .rows
                 .iter()
-                .map(|row| (row.metric.name(), delivered::level(guideline, row, found)))
+                .map(|row| (row.metric.short(), delivered::level(guideline, row, found)))
                 .filter(|(_, level)| *level != "–")
-                .map(|(name, level)| format!("{}: {level}", name.split(',').next().unwrap_or(name)))
+                .map(|(name, level)| format!("{name} {level}"))
                 .collect();
-            crate::say(format_args!("  {}: {}", guideline.name, levels.join("; ")));
+            crate::say(format_args!("  {}: {}", guideline.name, levels.join(", ")));
         }
         for note in &delivery.notes {
             crate::say(format_args!("  note: {}", shown(note)));

@@ -15,6 +15,7 @@ use darkroot::verify::{
 use darkroot::{Settings, shown, write_text};
 
 use crate::profile::{ShotArgs, store};
+use crate::sandbox::Sandbox;
 use crate::{Common, Outcome};
 
 /// Judge a shot of a chart by a profile, or finished pictures of a chart by its reference; exit code 3 when limits are not
@@ -34,6 +35,9 @@ pub(crate) struct Verify {
 
     #[command(flatten)]
     shot: ShotArgs,
+
+    #[command(flatten)]
+    sandbox: Sandbox,
 
     /// Light of the shot: D50, A, LED-B3, 5200K, x,y, lamp.csv; the one that its white shows if not given
     #[arg(long, value_name = "LIGHT")]
@@ -100,11 +104,16 @@ impl Verify {
         if let Some(pictures) = delivered::pictures(&self.inputs)? {
             return self.judge_pictures(&pictures, common);
         }
+        common.start_threads();
         let [profile, file] = &self.inputs[..] else {
-            bail!("give a profile and a raw shot of a chart, or finished pictures (TIFF, JPEG, PNG), or a folder of them");
+            bail!(
+                "give a profile and a raw shot of a chart, or finished pictures (TIFF, JPEG, PNG), or a folder of them"
+            );
         };
         if self.report.is_some() {
-            bail!("`--report` is for finished pictures; `darkroot profile --report` writes one on a raw shot");
+            bail!(
+                "`--report` is for finished pictures; `darkroot profile --report` writes one on a raw shot"
+            );
         }
         let Some(profile) = profile.to_str() else { bail!("the profile's name is not UTF-8") };
         let Found { profile, place } = store().choose(profile)?;
@@ -126,7 +135,10 @@ impl Verify {
             say(file, &found, self.light.is_none());
         }
         if let Some(log) = &self.log {
-            append(log, &self.log_line(profile.camera().name(), place, &found, of_preset, broken.is_empty()))?;
+            append(
+                log,
+                &self.log_line(profile.camera().name(), place, &found, of_preset, broken.is_empty()),
+            )?;
         }
         for fault in &broken {
             crate::say(format_args!("error: {}: {fault}", shown(file)));
@@ -144,7 +156,10 @@ impl Verify {
         let found = PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, limits)| *limits);
         found.with_context(|| {
             let names: Vec<&str> = PRESETS.iter().map(|(preset, _)| *preset).collect();
-            format!("the preset `{name}` judges finished pictures; for raw shots there are {}", names.join(", "))
+            format!(
+                "the preset `{name}` judges finished pictures; for raw shots there are {}",
+                names.join(", ")
+            )
         })
     }
 

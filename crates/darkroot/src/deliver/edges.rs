@@ -22,7 +22,8 @@ pub(super) fn edges(
         let lab = layout.patches[*i].lab;
         lab.a.hypot(lab.b) <= GREY && lab.l >= LIGHT
     };
-    let greys: Vec<Quad> = (0..patches.len().min(layout.patches.len())).filter(is_grey).map(|i| patches[i]).collect();
+    let greys: Vec<Quad> =
+        (0..patches.len().min(layout.patches.len())).filter(is_grey).map(|i| patches[i]).collect();
     let found = slanted_edge::responses(light, luminance, &greys, layout.gap);
     if found.len() < FEWEST {
         return None;

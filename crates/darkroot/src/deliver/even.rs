@@ -41,7 +41,9 @@ fn of_light(light: &Mosaic<f32>) -> Uniformity {
 
 /// Mean linear light of a part.
 fn mean(light: &Mosaic<f32>, part: usize) -> [f64; 3] {
-    let cut = |i: usize, parts: usize, length: usize| i * length / parts..((i + 1) * length / parts).max(i * length / parts + 1);
+    let cut = |i: usize, parts: usize, length: usize| {
+        i * length / parts..((i + 1) * length / parts).max(i * length / parts + 1)
+    };
     let columns = cut(part % PARTS[0], PARTS[0], light.size.width);
     let rows = cut(part / PARTS[0], PARTS[1], light.size.height);
     let (mut sum, mut count) = ([0.0; 3], 0.0f64);

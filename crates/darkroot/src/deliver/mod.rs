@@ -16,8 +16,8 @@ use darkroot_encode::source_profile::LINEAR;
 use darkroot_photo::{Layout, Mosaic, Size};
 
 pub use darkroot_calibrate::delivery::{
-    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Step, Uniformity, Verdict,
-    preset,
+    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Step,
+    Uniformity, Verdict, preset,
 };
 pub use even::uniformity;
 
@@ -190,7 +190,7 @@ impl Opened {
             None => SourceProfile::srgb(),
         };
         let mut samples = encoded.samples;
-        profile.linearise(&mut samples).map_err(of_profile)?;
+        profile.linearise(&mut samples);
         let size: Size = encoded.size;
         Ok(Self {
             light: Mosaic { size, layout: Layout::Rgb, samples },
@@ -211,9 +211,14 @@ fn apart(one: f64, other: f64) -> f64 {
 
 /// The light to judge under: the one that was named, if the picture does not say another, else the one that it says, else
 /// that of the reference.
-fn light_of(says: &Option<LightSource>, request: &DeliveryRequest) -> Result<(LightSource, LightFrom), ChartError> {
+fn light_of(
+    says: &Option<LightSource>,
+    request: &DeliveryRequest,
+) -> Result<(LightSource, LightFrom), ChartError> {
     match (&request.light, says) {
-        (Some(named), Some(says)) if apart(named.light.kelvin(), says.light.kelvin()) > OTHER_LIGHT && !request.accept => {
+        (Some(named), Some(says))
+            if apart(named.light.kelvin(), says.light.kelvin()) > OTHER_LIGHT && !request.accept =>
+        {
             let (says, named) = (says.light.name.clone(), named.light.name.clone());
             Err(ChartError::OtherLight { says, named })
         }

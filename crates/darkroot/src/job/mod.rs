@@ -125,8 +125,13 @@ pub fn develop_into(
             let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), settings.dpi);
             if recipe.look == Look::Reproduction {
                 let raw = (from_chart::file_name(input), hash);
-                let known =
-                    provenance::Known { raw, settings, profile: chosen.as_ref(), chart: told.as_ref(), plan: &plan };
+                let known = provenance::Known {
+                    raw,
+                    settings,
+                    profile: chosen.as_ref(),
+                    chart: told.as_ref(),
+                    plan: &plan,
+                };
                 let packet = provenance::packet(&known).into_bytes();
                 metadata.set(Directory::Image, tag::XMP, Value::Bytes(packet));
             }
@@ -274,11 +279,21 @@ fn plan(
     let profile = chosen.map(|c| c.profile.as_ref());
     if let Some(told) = told {
         told.check(input, photo.capture())?;
-        recipe.balance = if settings.chart.balance { told.balance() } else { recipe.balance };
+        recipe.balance = if settings.chart.balance { told.balance(None) } else { recipe.balance };
     }
-    let mut plan = photo
-        .plan_with(&photo.analyse_as_asked(), profile, recipe)
-        .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
+    let analysis = photo.analyse_as_asked();
+    let planned = |recipe: Recipe| {
+        let plan = photo.plan_with(&analysis, profile, recipe);
+        plan.map_err(|source| Error::Plan { path: input.to_owned(), source })
+    };
+    let mut plan = planned(recipe)?;
+    if let Some(told) = told.filter(|_| settings.chart.balance) {
+        // The white tells the light, and that how the greys look in it.
+        let light =
+            provenance::light_of(settings, profile, &plan).and_then(|name| provenance::by_name(&name));
+        recipe.balance = told.balance(light.as_ref());
+        plan = planned(recipe)?;
+    }
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();
     let mut notes = plan.notes.clone();
@@ -290,11 +305,7 @@ fn plan(
     }
     let report = Report {
         engine: "darkroot".to_owned(),
-        colours: if camera_output {
-            "none (camera RGB)".to_owned()
-        } else {
-            colours(&plan, capture, chosen)
-        },
+        colours: if camera_output { "none (camera RGB)".to_owned() } else { colours(&plan, capture, chosen) },
         profile: chosen.filter(|c| !camera_output && !c.estimated).map(|c| c.place.clone().into_owned()),
         kelvin: plan.white.map(|w| w.kelvin),
         tint: plan.white.map(|w| w.tint()),

@@ -1,7 +1,9 @@
 //! The report on a finished picture of a chart.
 
+use darkroot_calibrate::JudgedPatch;
 use darkroot_chart::ChartLayout;
-use darkroot_colour::{RgbSpace, Vector3, white};
+use darkroot_colour::difference::de2000;
+use darkroot_colour::{Lab, RgbSpace, Vector3, white};
 use darkroot_encode::source_profile::LINEAR;
 use maud::{Markup, html};
 
@@ -16,7 +18,12 @@ use crate::verify::{LogLine, Outcome};
 const LONGEST: usize = 1000;
 
 /// The page of one picture; `verdicts` are the limits that were asked for, with the guideline's name.
-pub fn html(judged: &JudgedPicture, layout: &ChartLayout, asked: Option<&str>, verdicts: &[Verdict]) -> String {
+pub fn html(
+    judged: &JudgedPicture,
+    layout: &ChartLayout,
+    asked: Option<&str>,
+    verdicts: &[Verdict],
+) -> String {
     let name = judged.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let body = html! {
         header {
@@ -25,12 +32,11 @@ pub fn html(judged: &JudgedPicture, layout: &ChartLayout, asked: Option<&str>, v
         }
         section {
             @if let Some(asked) = asked { (headline(asked, verdicts)) }
-            div.columns {
-                (picture(judged))
-                (limits(verdicts))
-            }
+            (picture(judged))
+            (limits(verdicts))
             h3 { "Patches: as delivered | as reference | as delivered" }
-            (swatches(&judged.delivery.patches, layout))
+            (swatches(&as_shown(&judged.delivery.patches), layout))
+            p.legend { "dE2000 of each patch, and without lightness." }
             div.columns {
                 (greys(judged))
                 (plots::vectors(&judged.delivery.patches))
@@ -43,6 +49,18 @@ pub fn html(judged: &JudgedPicture, layout: &ChartLayout, asked: Option<&str>, v
         }
     };
     page(&format!("Delivery {name}"), STYLE, body)
+}
+
+/// The patches with what a page shows of them: their colour in the picture, and its error without lightness.
+fn as_shown(patches: &[JudgedPatch]) -> Vec<JudgedPatch> {
+    let to_srgb = RgbSpace::SRGB.from_xyz_under(white::D50);
+    let one = |patch: &JudgedPatch| {
+        let (found, truth) = (patch.corrected.lab(white::D50), patch.reference.lab(white::D50));
+        let unlit = de2000(Lab { l: truth.l, ..found }, truth);
+        let rgb: [f64; 3] = (to_srgb * Vector3::from(patch.corrected)).into();
+        JudgedPatch { rgb, left_out: Some(unlit), ..patch.clone() }
+    };
+    patches.iter().map(one).collect()
 }
 
 /// The page of several pictures: a row for each, and their drift in the order in which they come.

@@ -140,7 +140,9 @@ pub enum SettingsError {
         settings: Vec<&'static str>,
     },
     /// Something of a chart without its shot.
-    #[error("{setting} asks for what a chart shows, and no shot of one is named; name it with exposure-from-chart")]
+    #[error(
+        "{setting} asks for what a chart shows, and no shot of one is named; name it with exposure-from-chart"
+    )]
     NoChartShot {
         /// Name of the setting that asks for it.
         setting: &'static str,

@@ -110,7 +110,11 @@ fn locate(view: &View, layout: &ChartLayout, options: &ShotOptions) -> Result<Pl
 }
 
 /// Where the chart is, by hand or by detection.
-pub(crate) fn locate_in(view: &View, layout: &ChartLayout, corners: Option<&Quad>) -> Result<Place, ChartError> {
+pub(crate) fn locate_in(
+    view: &View,
+    layout: &ChartLayout,
+    corners: Option<&Quad>,
+) -> Result<Place, ChartError> {
     let place = match corners {
         Some(corners) => find_chart::by_hand(layout, corners)?,
         None => find_chart::best(view, layout)?,

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use darkroot_colour::RgbSpace;
+use darkroot_photo::metadata::tag;
 use darkroot_photo::{Layout, Mosaic, Size};
 use image::ImageDecoder;
 
@@ -12,6 +13,8 @@ use crate::{Error, files};
 
 /// Bytes that a picture and the numbers that it becomes may take together: 200 megapixels of three bytes each.
 const MOST_BYTES: u64 = 200_000_000 * (3 + BYTES_OF_PIXEL);
+/// TIFF: the ICC profile.
+const ICC_PROFILE: u16 = 0x8773;
 /// Bytes of a pixel of linear RGB.
 const BYTES_OF_PIXEL: u64 = 12;
 
@@ -50,14 +53,17 @@ pub(crate) fn encoded(path: &Path, bytes: &[u8]) -> Result<Encoded, Error> {
     let mut decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     // A picture of one bit becomes twelve bytes a pixel: what it becomes is counted, not what it is.
-    let bytes = u64::from(decoder.color_type().bytes_per_pixel()) + BYTES_OF_PIXEL;
-    if u64::from(width) * u64::from(height) > MOST_BYTES / bytes {
+    let each = u64::from(decoder.color_type().bytes_per_pixel()) + BYTES_OF_PIXEL;
+    if u64::from(width) * u64::from(height) > MOST_BYTES / each {
         return Err(Error::chart(path, ChartError::Large { width, height }));
     }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MOST_BYTES);
     decoder.set_limits(limits).map_err(unreadable)?;
-    let (icc, xmp) = (decoder.icc_profile().ok().flatten(), decoder.xmp_metadata().ok().flatten());
+    // What TIFF has is read without its decoder, which gives up at large profiles.
+    let of_tiff = |tag: u16| darkroot_encode::tiff_field::bytes_of(bytes, tag).map(<[u8]>::to_vec);
+    let icc = of_tiff(ICC_PROFILE).or_else(|| decoder.icc_profile().ok().flatten());
+    let xmp = of_tiff(tag::XMP).or_else(|| decoder.xmp_metadata().ok().flatten());
     let colour = decoder.color_type();
     let bits = 8 * u16::from(colour.bytes_per_pixel()) / u16::from(colour.channel_count().max(1));
     let picture = image::DynamicImage::from_decoder(decoder).map_err(unreadable)?;
