@@ -14,6 +14,9 @@ pub use sharpness::{EdgeWidth, edge_width};
 pub mod slanted_edge;
 pub use slanted_edge::EdgeResponse;
 
+pub mod distortion;
+pub use distortion::Distortion;
+
 pub mod lightness_noise;
 pub use lightness_noise::lightness_noise;
 

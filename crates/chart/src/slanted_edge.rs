@@ -63,6 +63,26 @@ pub fn responses(light: &Mosaic<f32>, luminance: [f64; 3], patches: &[Quad], gap
     edges.filter_map(|(quad, side)| response(light, luminance, quad, side, gap)).collect()
 }
 
+/// Where a patch really is, by its four edges: how far its centre lies from that of the quadrilateral, pixels. `None` where an
+/// edge has too little contrast.
+pub(crate) fn centre_shift(
+    light: &Mosaic<f32>,
+    luminance: [f64; 3],
+    quad: &Quad,
+    gap: f64,
+) -> Option<[f64; 2]> {
+    let seen = |rgb: [f64; 3]| (0..3).map(|c| luminance[c] * rgb[c]).sum::<f64>();
+    let mut shift = [0.0; 2];
+    for side in 0..4 {
+        let strip = Strip::of(light, quad, side, gap)?;
+        let line = strip.line(&seen)?;
+        let rows = (strip.rows[0] + strip.rows[1]) as f64 / 2.0;
+        let expected = strip.start + strip.slope * (rows - strip.rows[0] as f64);
+        shift[usize::from(strip.exchanged)] += (line[0] + line[1] * rows - expected) / 2.0;
+    }
+    Some(shift)
+}
+
 /// A strip across an edge, with rows that run across it: in pixels as they are, or with columns and rows exchanged.
 struct Strip<'a> {
     light: &'a Mosaic<f32>,

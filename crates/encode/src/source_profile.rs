@@ -156,7 +156,8 @@ fn matrix_of(profile: &ColorProfile) -> Result<Way, ProfileFault> {
     let curves = [curve(&profile.red_trc)?, curve(&profile.green_trc)?, curve(&profile.blue_trc)?];
     let colorants = profile.colorant_matrix().v;
     let to_xyz = darkroot_colour::Matrix3::from_fn(|row, column| colorants[row][column]);
-    if !(to_xyz.determinant().abs() > 1e-9) || to_xyz.iter().any(|v| !v.is_finite()) {
+    let volume = to_xyz.determinant().abs();
+    if !volume.is_finite() || volume < 1e-9 || to_xyz.iter().any(|v| !v.is_finite()) {
         return Err(ProfileFault::Empty);
     }
     Ok(Way::Matrix { curves, matrix: to_linear(&to_xyz) })

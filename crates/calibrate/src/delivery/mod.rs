@@ -12,6 +12,7 @@ pub use tones::{Grey, Step};
 mod values;
 pub use values::{Found, Metric, Verdict};
 
+use darkroot_chart::Distortion;
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::difference::{de2000, de2000_sl1};
 use darkroot_colour::{Lab, Vector3, Xyz, white};
@@ -48,6 +49,8 @@ pub struct Details {
     pub uniformity: Option<Uniformity>,
     /// Sharpness of slanted edges.
     pub edges: Option<Edges>,
+    /// How far the chart's patches lie from a plane grid.
+    pub distortion: Option<Distortion>,
 }
 
 /// How even a picture of an even surface is.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use darkroot::deliver::{
-    DeliveryRequest, GUIDELINES, Guideline, JudgedPicture, Metric, Verdict, is_picture, judge, preset,
+    DeliveryRequest, GUIDELINES, Grey, Guideline, JudgedPicture, Metric, Verdict, is_picture, judge, preset,
 };
 use darkroot::fault::ChartError;
 use darkroot::report::delivered;
@@ -16,6 +16,8 @@ use super::Verify;
 use crate::sandbox;
 use crate::{Common, Outcome};
 
+/// L* up to which greys count as one.
+const SAME: f64 = 1.0;
 /// Most pictures of a folder.
 const MOST: usize = 10_000;
 
@@ -107,7 +109,16 @@ impl Verify {
                 self.say(found, verdicts);
             }
             if !without.is_empty() {
-                crate::say(format_args!("{} pictures show no chart and were not judged", without.len()));
+                let (count, verb) = if without.len() == 1 {
+                    ("1 picture".to_owned(), "shows")
+                } else {
+                    (format!("{} pictures", without.len()), "show")
+                };
+                crate::say(format_args!(
+                    "{count} {verb} no {} and {} not judged",
+                    request.layout.title,
+                    if without.len() == 1 { "was" } else { "were" }
+                ));
             }
         }
         let lines: Vec<LogLine> = judged.iter().zip(&verdicts).map(|(j, v)| self.line(j, v)).collect();
@@ -174,16 +185,28 @@ impl Verify {
             "  dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2} (SL = 1: mean {:.2}, max {:.2})",
             s.mean, s.median, s.p95, s.max, sl1.mean, sl1.max
         ));
-        let greys: Vec<String> = delivery
-            .greys
-            .iter()
-            .map(|g| format!("{:.1} ({:+.2})", g.found.l, g.lightness_error()))
-            .collect();
+        let mut greys: Vec<&Grey> = Vec::new();
+        for grey in &delivery.greys {
+            // Large charts have many greys of one lightness: the one that is most off stands for them.
+            match greys.last_mut().filter(|last| (last.truth.l - grey.truth.l).abs() < SAME) {
+                Some(last) if last.lightness_error().abs() < grey.lightness_error().abs() => *last = grey,
+                Some(_) => {}
+                None => greys.push(grey),
+            }
+        }
+        let greys: Vec<String> =
+            greys.iter().map(|g| format!("{:.1} ({:+.2})", g.found.l, g.lightness_error())).collect();
         crate::say(format_args!("  greys, L* (error): {}", greys.join(", ")));
         if let Some(edges) = delivery.details.edges {
             crate::say(format_args!(
                 "  edges ({}): SFR50 {:.3}, SFR10 {:.3} cycles a pixel, largest response {:.2}, red and blue off by {:.2} pixels",
                 edges.count, edges.sfr50, edges.sfr10, edges.peak, edges.misregistration
+            ));
+        }
+        if let Some(grid) = delivery.details.distortion {
+            crate::say(format_args!(
+                "  grid ({} patches): distortion {:.2} % of the diagonal, {:.2} pixels",
+                grid.patches, grid.percent, grid.pixels
             ));
         }
         if let Some(even) = delivery.details.uniformity {

@@ -50,8 +50,8 @@ fn mean(light: &Mosaic<f32>, part: usize) -> [f64; 3] {
     for y in rows.filter(|y| *y < light.size.height) {
         for x in columns.clone().filter(|x| *x < light.size.width) {
             let first = 3 * (y * light.size.width + x);
-            for c in 0..3 {
-                sum[c] += f64::from(light.samples[first + c]);
+            for (sum, v) in sum.iter_mut().zip(&light.samples[first..first + 3]) {
+                *sum += f64::from(*v);
             }
             count += 1.0;
         }

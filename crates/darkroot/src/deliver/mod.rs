@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use darkroot_calibrate::MeasuredPatch;
 use darkroot_calibrate::shot::Chart;
-use darkroot_chart::{ChartLayout, Quad, Reference, lightness_noise};
+use darkroot_chart::{ChartLayout, Quad, Reference, distortion, lightness_noise};
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use darkroot_encode::SourceProfile;
@@ -137,6 +137,7 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         .collect();
     let details = Details {
         edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout),
+        distortion: distortion::distortion(&view.frame.light, luminance, &place.patches, &request.layout),
         uniformity: request.flat.as_deref().map(uniformity).transpose()?,
     };
     let colour = |rgb: [f64; 3]| xyz(&to_xyz, rgb);

@@ -42,6 +42,7 @@ pub fn html(
                 (plots::vectors(&judged.delivery.patches))
                 (plots::lightness(&judged.delivery.patches))
             }
+            (details(judged))
             (levels(judged))
             @if !judged.delivery.notes.is_empty() {
                 ul.notes { @for note in &judged.delivery.notes { li { (note) } } }
@@ -170,6 +171,35 @@ fn greys(judged: &JudgedPicture) -> Markup {
                     td { (format!("{:.2}", grey.colour_error())) }
                     td { (format!("{:.2}", grey.noise)) }
                 }
+            }
+        }
+    }
+}
+
+/// What edges, the grid and an even surface tell.
+fn details(judged: &JudgedPicture) -> Markup {
+    let details = &judged.delivery.details;
+    let mut rows: Vec<(&str, String)> = Vec::new();
+    if let Some(edges) = details.edges {
+        rows.push(("slanted edges", edges.count.to_string()));
+        rows.push(("SFR50, cycles a pixel", format!("{:.3}", edges.sfr50)));
+        rows.push(("SFR10, cycles a pixel, at most 0.5", format!("{:.3}", edges.sfr10)));
+        rows.push(("largest response", format!("{:.2}", edges.peak)));
+        rows.push(("red and blue beside green, pixels", format!("{:.2}", edges.misregistration)));
+    }
+    if let Some(grid) = details.distortion {
+        rows.push(("distortion of the grid, % of the diagonal", format!("{:.2}", grid.percent)));
+    }
+    if let Some(even) = details.uniformity {
+        rows.push(("even surface: luminance, %", format!("{:.1}", even.luminance)));
+        rows.push(("even surface: L*", format!("{:.2}", even.lightness)));
+        rows.push(("even surface: a*b*", format!("{:.2}", even.colour)));
+    }
+    html! {
+        @if !rows.is_empty() {
+            table.models {
+                caption { "Details and geometry" }
+                @for (what, value) in &rows { tr { td { (what) } td { (value) } } }
             }
         }
     }
