@@ -366,7 +366,12 @@ mod tests {
         assert!(seen(&flat).is_empty());
         let straight: Quad = [[40.0, 40.0], [120.0, 40.0], [120.0, 120.0], [40.0, 120.0]];
         let picture = picture(0.8, [0.0; 3], 0.0);
-        assert!(responses(&picture, [0.2, 0.7, 0.1], &[straight], 0.3).is_empty());
+        let mut upright = flat.clone();
+        for (i, v) in upright.samples.iter_mut().enumerate() {
+            let inside = |v: usize| (40..120).contains(&v);
+            *v = if inside(i / 3 % SIZE.width) && inside(i / 3 / SIZE.width) { 0.8 } else { 0.1 };
+        }
+        assert!(responses(&upright, [0.2, 0.7, 0.1], &[straight], 0.3).is_empty());
         assert!(responses(&picture, [0.2, 0.7, 0.1], &[PATCH.map(|p| p.map(|v| v * 0.1))], 0.3).is_empty());
         let wild: Quad = [[f64::NAN, 0.0], [1e9, 0.0], [1e9, 1e9], [0.0, 1e9]];
         assert!(responses(&picture, [0.2, 0.7, 0.1], &[wild], 0.3).is_empty());
