@@ -21,7 +21,8 @@ pub(crate) fn developing(opened: &Opened) -> Reach {
         ProfileChoice::Automatic | ProfileChoice::Matrix => None,
     };
     // A DCP in the user's folder is read when it is wanted; profiles of the session, too.
-    let profiles = named.into_iter().chain(ProfileStore::user_folder()).chain(opened.session_profiles());
+    let named = named.into_iter().chain(opened.settings.chart.files());
+    let profiles = named.chain(ProfileStore::user_folder()).chain(opened.session_profiles());
     let takes_away = opened.settings.overwrite || opened.output.is_renamed();
     let access = if takes_away { Access::Replace } else { Access::Name };
     reading(opened.input())

@@ -5,7 +5,7 @@ use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use darkroot_profile::Model;
 use darkroot_profile::fit::{Samples, white_through};
 
-use crate::patch::Reference;
+use crate::patch::{Reference, with_spectra};
 use crate::{CalibrateError, JudgedPatch, LightSource, MeasuredPatch};
 
 /// Fewest patches that a calibration can be made of.
@@ -59,6 +59,15 @@ impl<'a> Balanced<'a> {
 /// Too few usable patches, or greys that show no white.
 pub fn white_of(patches: &[MeasuredPatch]) -> Result<[f64; 3], CalibrateError> {
     Ok(Balanced::new(patches, &LightSource::assumed(), &mut Vec::new())?.white_rgb)
+}
+
+/// As [`white_of`], where the light is known: greys of a chart are not neutral to the last, and not alike in every light.
+///
+/// # Errors
+/// As [`white_of`].
+pub fn white_under(patches: &[MeasuredPatch], light: &LightSource) -> Result<[f64; 3], CalibrateError> {
+    let patches = &*with_spectra(patches, light, &mut Vec::new());
+    Ok(Balanced::new(patches, light, &mut Vec::new())?.white_rgb)
 }
 
 fn over(rgb: [f64; 3], white: [f64; 3]) -> [f64; 3] {

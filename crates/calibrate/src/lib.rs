@@ -27,7 +27,7 @@ pub use gates::{Finding, Gate, Verdict};
 pub mod series;
 
 mod balanced;
-pub use balanced::white_of;
+pub use balanced::{white_of, white_under};
 
 mod compare;
 pub use compare::{Compared, EXPOSURES};
@@ -36,6 +36,8 @@ pub mod fit;
 pub use fit::{CalibrateError, Calibrated, calibrate};
 
 pub mod known_camera;
+
+pub mod delivery;
 
 pub mod judge;
 

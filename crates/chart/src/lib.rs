@@ -11,6 +11,15 @@ pub use measure::{Measurement, measure};
 pub mod sharpness;
 pub use sharpness::{EdgeWidth, edge_width};
 
+pub mod slanted_edge;
+pub use slanted_edge::EdgeResponse;
+
+pub mod distortion;
+pub use distortion::Distortion;
+
+pub mod lightness_noise;
+pub use lightness_noise::lightness_noise;
+
 pub mod unevenness;
 pub use unevenness::Slope;
 

@@ -131,8 +131,8 @@ impl Develop {
         orders: &[Order],
         common: Common,
     ) -> Result<(Vec<Job>, Opened)> {
-        let profiles = orders.iter().filter_map(|order| sandbox::profile(&order.settings));
-        let reach = sandbox::reading(&self.files).with_any(profiles, Access::Read);
+        let named = orders.iter().flat_map(|order| sandbox::named(&order.settings));
+        let reach = sandbox::reading(&self.files).with_any(named, Access::Read);
         self.sandbox.say(common);
         if let Some(root) = target.root().filter(|_| target.needs_headers()) {
             // The names of the outputs come out of the files.

@@ -122,7 +122,11 @@ fn main() -> ExitCode {
     // Some commands give up what they do not need first, and must be the only thread then.
     let is_confined = matches!(
         cli.command,
-        Command::Develop(_) | Command::Inspect(_) | Command::Chart(_) | Command::Worker(_)
+        Command::Develop(_)
+            | Command::Inspect(_)
+            | Command::Chart(_)
+            | Command::Verify(_)
+            | Command::Worker(_)
     );
     if !is_confined {
         common.start_threads();
@@ -188,7 +192,7 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
 
 /// A decoder that panics over a damaged file is caught and becomes an error; its own report helps nobody.
 fn keep_decoders_quiet() {
-    const DECODERS: [&str; 3] = ["flashraw", "rawloader", "imagepipe"];
+    const DECODERS: [&str; 4] = ["flashraw", "rawloader", "imagepipe", "moxcms"];
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let from_decoder =

@@ -52,12 +52,13 @@ pub(crate) fn reading<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Reach
         .with("/proc/self", Access::Read)
 }
 
-/// The profile that settings name, where it is a file.
-pub(crate) fn profile(settings: &Settings) -> Option<PathBuf> {
-    match &settings.profile {
+/// The files that settings name: the profile, and a shot of a chart with its layout and reference.
+pub(crate) fn named(settings: &Settings) -> impl Iterator<Item = PathBuf> {
+    let profile = match &settings.profile {
         ProfileChoice::File(path) => Some(path.clone()),
         ProfileChoice::Automatic | ProfileChoice::Matrix => None,
-    }
+    };
+    profile.into_iter().chain(settings.chart.files())
 }
 
 /// With a name for an output that is open.

@@ -126,6 +126,28 @@ pub enum ChartError {
     /// Colours that cannot have been measured in a light.
     #[error("has no XYZ: colours that were measured in the light of the shot are XYZ relative to its white")]
     NotXyz,
+    /// A picture whose colour profile cannot be used.
+    #[error("{0}")]
+    SourceProfile(#[from] darkroot_encode::ProfileFault),
+    /// A finished picture of another light than the one that was named.
+    #[error(
+        "says of itself that its colours are those under {says}, not under {named}: judge it under that light"
+    )]
+    OtherLight {
+        /// What it says.
+        says: String,
+        /// What was named.
+        named: String,
+    },
+    /// A finished picture whose greys are not neutral by far.
+    #[error(
+        "shows its greys as a light of {kelvin:.0} K would make them, where they should be neutral: it was balanced for another \
+         light than the chart's; balance it by the chart"
+    )]
+    OtherBalance {
+        /// Temperature of its greys, seen under D50.
+        kelvin: f64,
+    },
     /// A file that is no log of verified shots.
     #[error("is no log of verified shots")]
     NoLog,

@@ -47,7 +47,7 @@ pub fn find_charts(path: &Path, layouts: &[ChartLayout], settings: &Settings) ->
 }
 
 /// Charts in pixels of the developed picture.
-fn search(view: &View, layouts: &[ChartLayout]) -> Search {
+pub(crate) fn search(view: &View, layouts: &[ChartLayout]) -> Search {
     let bin = view.bin();
     let (size, planes) = view.binned(bin);
     let picture = SearchImage { width: size.width, height: size.height, planes };
@@ -80,7 +80,8 @@ pub(crate) fn by_hand(layout: &ChartLayout, corners: &Quad) -> Result<Place, Cha
     Ok(Place { corners: *corners, patches: of_patches(0.0)?, windows: of_patches(INSET)?, confidence: 1.0 })
 }
 
-fn place(found: &Found) -> Place {
+/// Where the patches of a found chart stand.
+pub(crate) fn place(found: &Found) -> Place {
     let all = |inset: f64| (0..found.columns * found.rows).map(|i| found.patch(i, inset)).collect();
     Place { corners: found.corners, patches: all(0.0), windows: all(INSET), confidence: found.confidence }
 }

@@ -35,6 +35,9 @@ pub use naming::{Job, NamingError, Target, plan_outputs};
 pub mod job;
 pub use job::{Control, Report, Step, develop, develop_into, encode_picture, open_output};
 
+mod from_chart;
+mod provenance;
+
 pub mod inspect;
 pub use inspect::{Inspection, inspect, save_preview};
 
@@ -74,6 +77,8 @@ pub mod shot;
 pub use shot::{Shot, ShotOptions};
 
 pub mod verify;
+
+pub mod deliver;
 
 pub mod page;
 

@@ -4,9 +4,9 @@
 use darkroot_photo::{CameraSpace, Display, Orientation, Rect, Rgb, Scene, Size};
 
 use crate::grid::Grid;
-use crate::plan::Plan;
+use crate::plan::{Mapping, Plan};
 use crate::transfer::{self, Sample};
-use crate::{correct, exposure, gamut, highlights, tone};
+use crate::{correct, exposure, gamut, highlights, tally, tone};
 
 /// Pixels that go through the stages together.
 const PIXELS: usize = 2048;
@@ -68,10 +68,14 @@ fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     let Some(model) = &plan.model else {
         return exposure::expose(camera.into_space::<Scene>(), plan.gain).into_space();
     };
-    let scene = correct::correct(camera, model);
+    let scene = correct::correct(exposure::darken(camera, plan.veil), model);
     let scene = exposure::expose(scene, plan.gain);
-    match &plan.curve {
-        Some(curve) => gamut::fit(tone::tone(scene, curve), &plan.primaries),
-        None => gamut::convert(scene, &plan.primaries),
+    let primaries = &plan.primaries;
+    match (&plan.curve, plan.gamut) {
+        (Some(curve), Mapping::Mapped) => gamut::fit(tone::tone(scene, curve), primaries),
+        (Some(curve), _) => tally::clip(gamut::unfitted(tone::tone(scene, curve), primaries), &plan.tally),
+        (None, Mapping::Mapped) => gamut::fit(gamut::untoned(scene, primaries), primaries),
+        (None, Mapping::Clipped) => tally::clip(gamut::convert(scene, primaries), &plan.tally),
+        (None, Mapping::Kept) => gamut::convert(scene, primaries),
     }
 }

@@ -16,6 +16,8 @@ pub struct Primaries {
     from_scene: Rows,
     /// From the responses that a look gives.
     from_cones: Rows,
+    /// From linear Rec. 2020 to responses.
+    scene_to_cones: Rows,
 }
 
 /// Pixels that are looked at together: in most runs the output can show all of them.
@@ -29,7 +31,11 @@ impl Primaries {
         let from_scene = space.from_xyz_under(white::D50) * RgbSpace::REC2020.to_xyz_under(white::D50);
         // Primaries of real spaces are three different colours, so the inverse exists.
         let from_cones = from_rgb(space).try_inverse().unwrap_or_else(Matrix3::identity);
-        Self { from_scene: rows(&from_scene), from_cones: rows(&from_cones) }
+        Self {
+            from_scene: rows(&from_scene),
+            from_cones: rows(&from_cones),
+            scene_to_cones: rows(&from_rgb(&RgbSpace::REC2020)),
+        }
     }
 
     /// A colour moved towards grey at its hue until the output can show it.
@@ -90,6 +96,24 @@ pub fn fit(mut picture: Rgb<Toned>, primaries: &Primaries) -> Rgb<Display> {
             }
         },
     );
+    picture.into_space()
+}
+
+/// Converts what a look shows, and changes nothing else.
+pub fn unfitted(mut picture: Rgb<Toned>, primaries: &Primaries) -> Rgb<Display> {
+    let [r, g, b] = picture.planes_mut();
+    for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
+        [*r, *g, *b] = times(primaries.from_cones, [*r, *g, *b]);
+    }
+    picture.into_space()
+}
+
+/// Light of the scene as responses, as it is: what is to be fitted without a look.
+pub fn untoned(mut picture: Rgb<Scene>, primaries: &Primaries) -> Rgb<Toned> {
+    let [r, g, b] = picture.planes_mut();
+    for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
+        [*r, *g, *b] = times(primaries.scene_to_cones, [*r, *g, *b]);
+    }
     picture.into_space()
 }
 
@@ -172,6 +196,16 @@ mod tests {
                 let (here, next) = (at(i), at(i + 1));
                 assert!(here.iter().zip(next).all(|(a, b)| (a - b).abs() < 0.015), "{pure:?} {i}");
             }
+        }
+    }
+
+    #[test]
+    fn light_that_is_not_toned_is_the_same_by_both_ways() {
+        let primaries = Primaries::new(&RgbSpace::ECIRGB_V2);
+        for rgb in [[0.2f32, 0.3, 0.4], [0.9, 0.1, 0.2], [0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [0.1, 0.9, 0.1]] {
+            let plain = convert(one(rgb), &primaries).at(0, 0);
+            let seen = unfitted(untoned(one(rgb), &primaries), &primaries).at(0, 0);
+            assert!(plain.iter().zip(seen).all(|(a, b)| (a - b).abs() < 1e-5), "{rgb:?}: {plain:?} {seen:?}");
         }
     }
 

@@ -18,8 +18,8 @@
 
 pub mod recipe;
 pub use recipe::{
-    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Geometry, Highlights, HotPixels, Lens, Look,
-    Output, OutputSpace, Recipe, Resize, Tones, Turn,
+    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Gamut, Geometry, Highlights, HotPixels, Lens,
+    Look, Output, OutputSpace, Recipe, Resize, Tones, Turn,
 };
 
 pub mod error;
@@ -36,6 +36,9 @@ pub use plan::{Colours, Plan, plan};
 
 pub mod view;
 pub use view::{Cancel, Cancelled, Scale, View};
+
+pub mod tally;
+pub use tally::{Clipped, Tally};
 
 pub mod stage;
 

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use darkroot_colour::temperature::Temperature;
-use darkroot_colour::{RgbSpace, TransferCurve, Xy, white};
+use darkroot_colour::{RgbSpace, TransferCurve, Xy, Xyz, white};
 use darkroot_photo::{AsShot, Capture, Correction, Layout, Size};
 use darkroot_profile::{Model, PlaneModel, Profile};
 
@@ -20,8 +20,9 @@ use crate::lateral::Lateral;
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Denoise, Exposure, Highlights, HotPixels, OutputSpace, Recipe};
+use crate::recipe::{Bits, Denoise, Exposure, Gamut, Highlights, HotPixels, Look, OutputSpace, Recipe};
 use crate::sharpen::Sharpener;
+use crate::tally::{Clipped, Tally};
 use crate::tone::Curve;
 use crate::transfer::Encoder;
 use crate::view::Scale;
@@ -41,6 +42,17 @@ pub enum Colours {
     Grey,
 }
 
+/// What becomes of colours that the output cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mapping {
+    /// Nothing: floating point keeps them.
+    Kept,
+    /// They are cut, and counted.
+    Clipped,
+    /// They are moved inside.
+    Mapped,
+}
+
 /// A recipe made ready for one capture, with the capture.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -52,6 +64,8 @@ pub struct Plan {
     pub multipliers: [f32; 3],
     /// Factor on scene-linear light.
     pub gain: f32,
+    /// Stray light in balanced camera RGB, which is taken off; 0 unless whoever made the plan knows of some.
+    pub veil: [f32; 3],
     /// Demosaicing method.
     pub demosaic: Method,
     /// What had to be assumed or left out, in words.
@@ -74,6 +88,9 @@ pub struct Plan {
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
+    pub(crate) gamut: Mapping,
+    pub(crate) tally: Arc<Tally>,
+    colour_model: Option<Model>,
     pub(crate) primaries: Primaries,
     pub(crate) encoder: Encoder,
     pub(crate) space: OutputSpace,
@@ -84,6 +101,18 @@ impl Plan {
     /// Size of the developed picture, upright.
     pub fn size(&self) -> Size {
         self.size_at(Scale::FULL)
+    }
+
+    /// What rendering has cut until now, all views together; nothing where colours are mapped or kept.
+    pub fn clipped(&self) -> Clipped {
+        self.tally.clipped()
+    }
+
+    /// What the plan makes of light of the sensor (camera RGB, not balanced, 1 = the white level) before exposure: XYZ
+    /// relative to D50, Y = 1 for white. `None` for camera output.
+    pub fn colour_of(&self, camera: [f64; 3]) -> Option<Xyz> {
+        let model = self.colour_model.as_ref()?;
+        Some(model.xyz([0, 1, 2].map(|c| camera[c] * f64::from(self.multipliers[c]))))
     }
 
     /// Size of the developed picture at a scale, upright.
@@ -105,7 +134,12 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let camera_output = recipe.output.space == OutputSpace::Camera;
     // What the camera rendered for display has its look already.
     let curve = Curve::of(recipe.look, &recipe.tones).filter(|_| !capture.rendered);
-    let measuring = curve.is_none() || camera_output;
+    let camera_look = curve.is_none() && capture.rendered;
+    let reproduced = recipe.look == Look::Reproduction && !camera_look;
+    let linear = curve.is_none() && !reproduced;
+    let measuring = linear || camera_output;
+    // Neither noise nor blur of the original's picture is anybody's to take away unasked.
+    let as_it_is = measuring || reproduced;
     let laid = lay(capture, recipe.crop, &recipe.geometry, measuring)?;
     let mut notes = Vec::new();
     let whites = whites(analysis, profile);
@@ -119,7 +153,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     };
     let mends = mends(analysis, recipe.hot_pixels, measuring);
     notes.extend(mends.notes());
-    let denoiser = denoiser(analysis, recipe.denoise, measuring, multipliers, &mends);
+    let denoiser = denoiser(analysis, recipe.denoise, as_it_is, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
     notes.extend(laid.lens_note(capture));
     let lateral = lateral(analysis, &recipe.geometry, measuring || demosaic == Method::None, &laid);
@@ -132,6 +166,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         white: white.map(Temperature::of),
         multipliers,
         gain: gain(analysis, recipe.exposure, curve.is_none(), &model, multipliers),
+        veil: [0.0; 3],
         demosaic,
         notes,
         capture: Arc::clone(capture),
@@ -147,24 +182,37 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         mends,
         denoiser,
         lateral,
-        sharpener: sharpener(analysis, recipe.sharpen, measuring, multipliers),
+        sharpener: sharpener(analysis, recipe.sharpen, as_it_is, multipliers),
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
             _ if camera_output => Treatment::Keep,
             // A measurement must not contain what was guessed.
-            Highlights::Rebuild if curve.is_none() => Treatment::Keep,
+            Highlights::Rebuild if linear => Treatment::Keep,
             wanted => treatment(analysis, wanted, multipliers, is_uneven),
         },
         model: (!camera_output).then(|| {
             let to_scene = RgbSpace::REC2020.from_xyz_under(white::D50);
             PlaneModel::new(&model.then(&to_scene))
         }),
+        colour_model: (!camera_output).then_some(model),
+        gamut: mapping(recipe.gamut, linear, reproduced),
+        tally: Arc::default(),
         curve,
         primaries: Primaries::new(&space),
         encoder: Encoder::new(transfer),
         space: recipe.output.space,
         bits: recipe.output.bits,
     })
+}
+
+/// What becomes of colours that the output cannot show, as asked or as suits the look.
+fn mapping(asked: Gamut, linear: bool, reproduced: bool) -> Mapping {
+    match asked {
+        _ if linear => Mapping::Kept,
+        Gamut::Clip => Mapping::Clipped,
+        Gamut::Auto if reproduced => Mapping::Clipped,
+        Gamut::Auto | Gamut::Map => Mapping::Mapped,
+    }
 }
 
 /// What is put right in single samples. A measurement gets them as they are.

@@ -27,6 +27,8 @@ pub struct Recipe {
     pub look: Look,
     /// What is changed about it.
     pub tones: Tones,
+    /// What becomes of colours that the output cannot show.
+    pub gamut: Gamut,
     /// Which part of the frame.
     pub crop: Crop,
     /// How that lies in the picture, and how large it gets.
@@ -134,8 +136,24 @@ pub enum Look {
     Vivid,
     /// Low contrast, for further editing.
     Flat,
+    /// Colorimetric: light in proportion, colours as measured, no tone curve, no baseline exposure; neither denoised nor
+    /// sharpened unless asked. What an original is reproduced with.
+    Reproduction,
     /// Strictly scene-linear: no automatic anything, not even the maker's baseline exposure.
     Linear,
+}
+
+/// What becomes of colours that the output cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Gamut {
+    /// What suits the look: they are cut in the reproduction look, and mapped in those with a tone curve.
+    #[default]
+    Auto,
+    /// Each channel is cut at black and at white: what the output can show stays exactly as it is, and of the rest hue,
+    /// lightness and chroma may change.
+    Clip,
+    /// They lose chroma at their hue and lightness until the output can show them.
+    Map,
 }
 
 /// Space and sample type of the result.

@@ -55,7 +55,7 @@ const BRIGHTEST: f32 = 1e6;
 const DARKEST: f32 = 1e-6;
 
 impl Curve {
-    /// The curve of a look, changed; `None` for the linear one.
+    /// The curve of a look, changed; `None` for those that show light in proportion.
     pub fn of(look: Look, tones: &Tones) -> Option<Self> {
         // A metered grey is shown so that pictures are as bright as those of cameras (tests/compare/brightness.py).
         let curve = |quarters: u8, shown_grey: f64, chroma: f32| {
@@ -73,7 +73,7 @@ impl Curve {
             Look::Neutral => Some(curve(7, 0.28, 1.0)),
             Look::Vivid => Some(curve(8, 0.28, 1.15)),
             Look::Flat => Some(curve(5, 0.24, 1.0)),
-            Look::Linear => None,
+            Look::Reproduction | Look::Linear => None,
         }
     }
 

@@ -15,6 +15,7 @@ use exif::{Context, In, Rational, SRational, Tag};
 /// file stores its pixels, and fields without a value, are left out. Text keeps its UTF-8 bytes.
 pub fn block(metadata: &Metadata) -> Vec<u8> {
     let fields: Vec<exif::Field> = fields(metadata)
+        .filter(|field| !is_xmp(field))
         .map(|field| exif::Field {
             tag: Tag(context(field.directory), field.tag),
             ifd_num: In::PRIMARY,
@@ -38,6 +39,30 @@ pub fn block(metadata: &Metadata) -> Vec<u8> {
         // Left are blocks of 4 GB and more.
         Err(_) => Vec::new(),
     }
+}
+
+/// When a finished picture says that it was taken ("2026:05:01 12:00:00"), from the bytes of its file; `None` where it does
+/// not say so.
+pub fn date_of(file: &[u8]) -> Option<String> {
+    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(file)).ok()?;
+    let field = exif.get_field(Tag::DateTimeOriginal, In::PRIMARY)?;
+    match &field.value {
+        exif::Value::Ascii(texts) => texts.first().and_then(|text| String::from_utf8(text.clone()).ok()),
+        _ => None,
+    }
+}
+
+/// The packet of XMP, where there is one. TIFF has a field for it; other formats have a place outside of Exif.
+pub(crate) fn xmp(metadata: &Metadata) -> &[u8] {
+    let packet = metadata.fields().iter().find(|field| is_xmp(field)).map(|field| &field.value);
+    match packet {
+        Some(Value::Bytes(bytes) | Value::Undefined(bytes)) => bytes,
+        _ => &[],
+    }
+}
+
+fn is_xmp(field: &Field) -> bool {
+    field.directory == Directory::Image && field.tag == tag::XMP
 }
 
 /// The fields that are written for a picture, in the order of their tags, but for the orientation.
@@ -165,6 +190,14 @@ mod tests {
             }
         }
         assert_eq!(exif.fields().count(), metadata().fields().len());
+    }
+
+    #[test]
+    fn a_packet_of_xmp_stands_outside_of_the_block() {
+        let mut fields = metadata();
+        fields.set(Directory::Image, tag::XMP, Value::Bytes(b"<x/>".to_vec()));
+        assert_eq!(xmp(&fields), b"<x/>");
+        assert_eq!(block(&fields), block(&metadata()));
     }
 
     #[test]

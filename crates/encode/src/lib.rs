@@ -56,6 +56,11 @@ pub use output::Out;
 pub mod exif;
 pub mod icc;
 
+pub mod tiff_field;
+
+pub mod source_profile;
+pub use source_profile::{ProfileFault, SourceProfile};
+
 mod avif;
 mod exr;
 mod jpeg;

@@ -104,6 +104,8 @@ pub mod tag {
     pub const ORIENTATION: u16 = 0x0112;
     /// Image: software that wrote the file.
     pub const SOFTWARE: u16 = 0x0131;
+    /// A packet of XMP, as bytes (XMP specification, part 3, 3.2.3.2: TIFF).
+    pub const XMP: u16 = 0x02bc;
     /// Image: date and time of the last change.
     pub const DATE_TIME: u16 = 0x0132;
     /// Image: photographer.

@@ -25,6 +25,12 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
 fn of_chart(error: &ChartError) -> Option<String> {
     let words = match error {
         ChartError::Rendered => "or add `--allow-rendered` for a profile that serves this rendering only",
+        ChartError::OtherLight { .. } => {
+            "leave `--light` out, or add `--accept` to judge it under the named one all the same"
+        }
+        ChartError::OtherBalance { .. } => {
+            "`develop --white-balance chart` does; add `--accept` to judge it as it is"
+        }
         ChartError::NotFound { .. } => "or give its corners, `--corners x,y,x,y,x,y,x,y`",
         ChartError::NoReference => "name it with `--reference`",
         ChartError::Refused(gate) => {

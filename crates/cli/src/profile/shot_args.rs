@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
+use darkroot::deliver::DeliveryRequest;
 use darkroot::shot::{Correct, ShotOptions};
 use darkroot::{ChartRequest, LightSource, charts, light};
 use darkroot_profile::Kind;
@@ -48,7 +49,8 @@ pub(crate) struct ShotArgs {
     #[arg(long, value_name = "X,Y,X,Y,X,Y,X,Y", value_parser = crate::values::corners)]
     corners: Option<[[f64; 2]; 4]>,
 
-    /// A shot of an even surface in the same light, to take light fall-off out
+    /// A shot of an even surface in the same light, to take light fall-off out; with a finished picture one that was made in
+    /// the same way, to judge how even the light is
     #[arg(long, value_name = "FILE")]
     flat: Option<PathBuf>,
 
@@ -112,6 +114,26 @@ impl ShotArgs {
             accept: self.accept,
             allow_rendered: self.allow_rendered,
         }
+    }
+
+    /// A request for finished pictures. What only a shot of the sensor can have is refused.
+    pub(crate) fn delivery(&self, light: Option<LightSource>) -> Result<DeliveryRequest> {
+        if self.dark.is_some() || self.even_out.is_some() || self.correct_glare.is_some() {
+            bail!(
+                "`--dark`, `--even-out` and `--correct-glare` are for raw shots: a finished picture is judged as it is"
+            );
+        }
+        let layout = charts::layout(&self.chart)?;
+        let reference = charts::reference(self.reference.as_deref(), &layout)?;
+        Ok(DeliveryRequest {
+            layout,
+            reference: reference.colours,
+            corners: self.corners,
+            exclude: self.exclude.clone(),
+            flat: self.flat.clone(),
+            light,
+            accept: self.accept,
+        })
     }
 
     /// A request for shots, each with its light. They are corrected as the arguments say, else `unless_said`.

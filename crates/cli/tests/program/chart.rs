@@ -6,6 +6,7 @@ use darkroot_colour::illuminant::Illuminant;
 use super::*;
 
 mod checks;
+mod delivering;
 mod finding;
 mod making;
 mod series;

@@ -1,5 +1,6 @@
 //! Developing one file.
 
+mod metadata;
 mod report;
 
 use std::io;
@@ -7,18 +8,20 @@ use std::path::Path;
 use std::time::Instant;
 
 use darkroot_colour::temperature::Temperature;
-use darkroot_develop::{Bits, Cancel, Cancelled, OutputSpace, Plan, Recipe, Scale};
+use darkroot_develop::{Bits, Cancel, Cancelled, Look, OutputSpace, Plan, Recipe, Scale};
 use darkroot_encode::{Format, Outline};
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
-use darkroot_photo::{Capture, Picture, PictureSpace};
+use darkroot_photo::{Capture, Picture};
 use darkroot_profile::Profile;
 
 use crate::files::{self, Failed, Output};
+use crate::from_chart::Told;
 use crate::photo::Photo;
-use crate::settings::{Engine, Settings};
-use crate::store::ProfileStore;
-use crate::{Error, Job, VERSION};
+use crate::settings::{ChartShot, Engine, Settings};
+use crate::store::{ChosenProfile, ProfileStore};
+use crate::{Error, Job, from_chart, provenance};
 
+use metadata::metadata_for;
 pub use report::Report;
 use report::{blank_report, colours};
 
@@ -101,7 +104,15 @@ pub fn develop_into(
     control.step(Step::Decode);
     let format = format_of(output, settings);
     let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
-    let photo = open(input, &read()?, settings, store)?;
+    let told = from_chart::of_file(settings)?;
+    let bytes = read()?;
+    let photo = open(input, &bytes, settings, store)?;
+    let told = match settings.chart.shot {
+        ChartShot::Itself => Some(from_chart::of_photo(input, &photo, &settings.chart)?),
+        _ => told,
+    };
+    let hash = if recipe.look == Look::Reproduction { files::sha256(&bytes) } else { String::new() };
+    drop(bytes);
 
     control.step(Step::Develop);
     let mut notes = photo.capture().notes.clone();
@@ -109,8 +120,22 @@ pub fn develop_into(
     let cancel = control.cancel.unwrap_or(&uncancelled);
     let (mut report, metadata, picture) = match settings.engine {
         Engine::Darkroot => {
-            let (plan, report) = plan(input, &photo, settings, store, &recipe)?;
-            let metadata = metadata_for(photo.capture(), &plan.picture_space(), settings.dpi);
+            let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
+            let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, recipe, told.as_ref())?;
+            let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), settings.dpi);
+            if recipe.look == Look::Reproduction {
+                let raw = (from_chart::file_name(input), hash);
+                let known = provenance::Known {
+                    raw,
+                    settings,
+                    profile: chosen.as_ref(),
+                    chart: told.as_ref(),
+                    plan: &plan,
+                };
+                let packet = provenance::packet(&known).into_bytes();
+                metadata.set(Directory::Image, tag::XMP, Value::Bytes(packet));
+            }
+            drop(chosen);
             drop(photo);
             if format.takes_bands() && control.seen.is_none() {
                 let write = match recipe.output.bits {
@@ -119,11 +144,13 @@ pub fn develop_into(
                     Bits::Float => write_in_bands::<f32>,
                 };
                 write(to, job, settings, format, &metadata, &plan, cancel)?;
+                notes.extend(report::clipped(&plan));
                 (report, metadata, None)
             } else {
                 let picture = plan
                     .render(plan.whole(Scale::FULL), cancel)
                     .map_err(|Cancelled| Error::Cancelled { path: input.clone() })?;
+                notes.extend(report::clipped(&plan));
                 (report, metadata, Some((picture, to)))
             }
         }
@@ -244,29 +271,42 @@ fn format_of(output: &Path, settings: &Settings) -> Format {
 fn plan(
     input: &Path,
     photo: &Photo,
+    chosen: Option<&ChosenProfile<'_>>,
     settings: &Settings,
-    store: &ProfileStore,
-    recipe: &Recipe,
+    mut recipe: Recipe,
+    told: Option<&Told>,
 ) -> Result<(Plan, Report), Error> {
-    let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
-    let profile = chosen.as_ref().map(|c| c.profile.as_ref());
-    let plan = photo
-        .plan_with(&photo.analyse_as_asked(), profile, *recipe)
-        .map_err(|source| Error::Plan { path: input.to_owned(), source })?;
+    let profile = chosen.map(|c| c.profile.as_ref());
+    if let Some(told) = told {
+        told.check(input, photo.capture())?;
+        recipe.balance = if settings.chart.balance { told.balance(None) } else { recipe.balance };
+    }
+    let analysis = photo.analyse_as_asked();
+    let planned = |recipe: Recipe| {
+        let plan = photo.plan_with(&analysis, profile, recipe);
+        plan.map_err(|source| Error::Plan { path: input.to_owned(), source })
+    };
+    let mut plan = planned(recipe)?;
+    if let Some(told) = told.filter(|_| settings.chart.balance) {
+        // The white tells the light, and that how the greys look in it.
+        let light =
+            provenance::light_of(settings, profile, &plan).and_then(|name| provenance::by_name(&name));
+        recipe.balance = told.balance(light.as_ref());
+        plan = planned(recipe)?;
+    }
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();
     let mut notes = plan.notes.clone();
+    if let Some(told) = told {
+        notes.extend(told.expose(&mut plan, recipe.exposure.stops, capture));
+    }
     if !camera_output && settings.light.is_none() {
         notes.extend(profile.zip(plan.white).and_then(|(profile, white)| far_light(profile, white)));
     }
     let report = Report {
         engine: "darkroot".to_owned(),
-        colours: if camera_output {
-            "none (camera RGB)".to_owned()
-        } else {
-            colours(&plan, capture, chosen.as_ref())
-        },
-        profile: chosen.filter(|c| !camera_output && !c.estimated).map(|c| c.place.into_owned()),
+        colours: if camera_output { "none (camera RGB)".to_owned() } else { colours(&plan, capture, chosen) },
+        profile: chosen.filter(|c| !camera_output && !c.estimated).map(|c| c.place.clone().into_owned()),
         kelvin: plan.white.map(|w| w.kelvin),
         tint: plan.white.map(|w| w.tint()),
         multipliers: plan.multipliers,
@@ -308,24 +348,4 @@ fn second_engine(input: &Path, capture: &Capture, recipe: &Recipe) -> Result<(Pi
 fn second_engine(input: &Path, _: &Capture, _: &Recipe) -> Result<(Picture, Report), Error> {
     let reason = "this build was made without it".to_owned();
     Err(Error::Engine { path: input.to_owned(), reason })
-}
-
-/// The camera's fields with what developing changed.
-fn metadata_for(capture: &Capture, space: &PictureSpace, dpi: Option<u32>) -> Metadata {
-    const INCH: u16 = 2;
-    const SRGB: u16 = 1;
-    const UNCALIBRATED: u16 = 65535;
-    let mut metadata = capture.metadata.clone();
-    let source = if capture.rendered { ", from the camera's embedded JPEG" } else { "" };
-    metadata.set(Directory::Image, tag::SOFTWARE, Value::Text(format!("Darkroot {VERSION}{source}")));
-    let srgb = *space == PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
-    let space = if srgb { SRGB } else { UNCALIBRATED };
-    metadata.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));
-    if let Some(dpi) = dpi {
-        for tag in tag::RESOLUTION {
-            metadata.set(Directory::Image, tag, Value::Rationals(vec![(dpi, 1)]));
-        }
-        metadata.set(Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH]));
-    }
-    metadata
 }

@@ -75,6 +75,21 @@ pub(super) fn colours(plan: &Plan, capture: &Capture, chosen: Option<&ChosenProf
     }
 }
 
+/// What a rendered plan has cut, in words; nothing where nothing was.
+pub(super) fn clipped(plan: &Plan) -> Option<String> {
+    let cut = plan.clipped();
+    if cut.above + cut.below == 0 {
+        return None;
+    }
+    let share = |count: u64| 100.0 * count as f64 / cut.pixels.max(1) as f64;
+    Some(format!(
+        "{:.3} % of the pixels are brighter than white and {:.3} % have colours outside of {}: they were clipped",
+        share(cut.above),
+        share(cut.below),
+        plan.picture_space().name()
+    ))
+}
+
 /// What can be said of every picture.
 pub(super) fn blank_report(
     input: &Path,

@@ -293,7 +293,7 @@ pub fn header_of(capture: &darkroot_photo::Capture) -> (String, String) {
 }
 
 /// The day of an Exif date (2026:05:01 12:00:00) as 2026-05-01.
-fn date(text: &str) -> Option<String> {
+pub(crate) fn date(text: &str) -> Option<String> {
     let day = text.get(..10)?.replace(':', "-");
     let form = |(i, c): (usize, char)| if i == 4 || i == 7 { c == '-' } else { c.is_ascii_digit() };
     day.chars().enumerate().all(form).then_some(day)

@@ -47,6 +47,9 @@ impl Effective {
         for (key, (text, _)) in &self.values {
             let key = *key;
             key.apply(text, &mut settings).map_err(|wrong| RecipeError::Flag { key, wrong })?;
+            if text != key.default_text() {
+                settings.told.push((key.name(), text.clone()));
+            }
         }
         Ok(settings)
     }

@@ -1,5 +1,6 @@
 //! The report on a profile: one HTML page with everything in it, nothing from the network.
 
+pub mod delivered;
 mod plots;
 mod shown;
 mod tables;
@@ -45,6 +46,7 @@ fn section(light: &MadeLight, layout: &ChartLayout) -> Markup {
             }
             h3 { "Patches: as measured | as reference | as corrected" }
             (swatches(patches, layout))
+            p.legend { "dE2000 by the profile, and by a fit without the patch." }
             (tables::models(&light.calibrated))
             (tables::exposures(&light.calibrated))
             div.columns {
@@ -138,7 +140,6 @@ fn swatches(patches: &[JudgedPatch], layout: &ChartLayout) -> Markup {
         svg.swatches viewBox=(view_box) role="img" aria-label="patches" {
             @for patch in patches.iter().enumerate() { (one(patch)) }
         }
-        p.legend { "dE2000 by the profile, and by a fit without the patch." }
     }
 }
 

@@ -25,7 +25,7 @@ pub(super) fn picture(view: &View, calibrated: &Calibrated, shot: &Shot) -> Mark
         figure.picture {
             div.frame {
                 img alt="the shot" src=(format!("data:image/jpeg;base64,{}", base64(&jpeg)));
-                (overlay(shot, view.size))
+                (overlay(&shot.corners, &shot.windows, view.size))
             }
             figcaption { "The shot through the profile, with the chart as it was found." }
         }
@@ -33,7 +33,7 @@ pub(super) fn picture(view: &View, calibrated: &Calibrated, shot: &Shot) -> Mark
 }
 
 /// Grid, windows and numbers as SVG in pixels of the developed picture.
-fn overlay(shot: &Shot, size: Size) -> Markup {
+pub(super) fn overlay(corners: &Quad, windows: &[Quad], size: Size) -> Markup {
     let points =
         |quad: &Quad| quad.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ");
     let stroke = size.width as f64 / 400.0;
@@ -46,8 +46,8 @@ fn overlay(shot: &Shot, size: Size) -> Markup {
     let view_box = format!("-0.5 -0.5 {} {}", size.width, size.height);
     html! {
         svg viewBox=(view_box) preserveAspectRatio="none" fill="none" {
-            polygon points=(points(&shot.corners)) stroke="#ff0" stroke-width=(stroke) {}
-            @for (i, window) in shot.windows.iter().enumerate() {
+            polygon points=(points(corners)) stroke="#ff0" stroke-width=(stroke) {}
+            @for (i, window) in windows.iter().enumerate() {
                 polygon points=(points(window)) stroke="#fff" stroke-width=(stroke / 2.0) {}
                 (number(i, window))
             }
@@ -64,6 +64,11 @@ fn jpeg(view: &View, calibrated: &Calibrated, bin: usize) -> Vec<u8> {
         linear.map(|v| (RgbSpace::SRGB.curve.encode(v.clamp(0.0, 1.0)) * 255.0).round() as u8)
     };
     let samples = (0..size.area()).flat_map(pixel).collect();
+    jpeg_of(size, samples)
+}
+
+/// Eight bits of sRGB as a JPEG.
+pub(super) fn jpeg_of(size: Size, samples: Vec<u8>) -> Vec<u8> {
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
     let mut out = Cursor::new(Vec::new());
     let options = darkroot_encode::Options { quality: 85, ..darkroot_encode::Options::default() };

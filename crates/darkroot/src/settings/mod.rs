@@ -5,6 +5,9 @@
 pub mod setting;
 pub use setting::{Changes, Group, Kind, Setting, Word};
 
+pub mod from_chart;
+pub use from_chart::{ChartShot, FromChart};
+
 mod geometry;
 mod tones;
 mod words;
@@ -69,6 +72,10 @@ pub struct Settings {
     pub format: Option<Format>,
     /// Pixels an inch on paper that files shall state; else they state what the camera wrote.
     pub dpi: Option<u32>,
+    /// What is taken from a shot of a chart.
+    pub chart: FromChart,
+    /// What was asked for that is not the default, as texts by name: for the provenance of a reproduction.
+    pub told: Vec<(&'static str, String)>,
     /// How files are written.
     pub encode: darkroot_encode::Options,
     /// Which profile.
@@ -126,6 +133,26 @@ pub enum SettingsError {
         /// Names of the settings that ask for it.
         settings: Vec<&'static str>,
     },
+    /// Changes of a look on top of colours as measured.
+    #[error("a reproduction shows what was measured and leaves no room for {}: choose another look for that", settings.join(", "))]
+    TonesOnReproduction {
+        /// Names of the settings that ask for it.
+        settings: Vec<&'static str>,
+    },
+    /// Something of a chart without its shot.
+    #[error(
+        "{setting} asks for what a chart shows, and no shot of one is named; name it with exposure-from-chart"
+    )]
+    NoChartShot {
+        /// Name of the setting that asks for it.
+        setting: &'static str,
+    },
+    /// An exposure from a chart where it cannot hold.
+    #[error("exposure-from-chart does not go with {setting} as it is set; leave one of them out")]
+    ChartWith {
+        /// Name of the other setting.
+        setting: &'static str,
+    },
     /// Camera RGB in an integer format.
     #[error("camera RGB is for measurement: write a 32-bit .tif or an .exr file")]
     CameraNeedsFloat,
@@ -144,10 +171,10 @@ pub enum SettingsError {
 }
 
 impl Settings {
-    /// The format that outputs get when neither name nor option says: JPEG, or TIFF for linear light.
+    /// The format that outputs get when neither name nor option says: JPEG, or TIFF for reproductions and linear light.
     pub fn default_format(&self) -> Format {
-        let linear = self.recipe.look == Look::Linear || self.space == Some(OutputSpace::Camera);
-        if linear { Format::Tiff } else { Format::Jpeg }
+        let measured = matches!(self.recipe.look, Look::Reproduction | Look::Linear);
+        if measured || self.space == Some(OutputSpace::Camera) { Format::Tiff } else { Format::Jpeg }
     }
 
     /// The recipe for a format: fills in space and bits where nobody named them, and checks that all of it fits.
@@ -175,6 +202,7 @@ impl Settings {
             return Err(SettingsError::CameraNeedsFloat);
         }
         check_tones(&recipe, linear || camera)?;
+        from_chart::check(self, camera)?;
         if linear && bits == 8 {
             return Err(SettingsError::LinearInEightBits { format: format.name() });
         }
@@ -205,13 +233,18 @@ impl Settings {
 /// Linear light has no look that could be changed.
 fn check_tones(recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
     let settings = tones::changed(&recipe.tones);
-    if !linear || settings.is_empty() { Ok(()) } else { Err(SettingsError::TonesOnLinear { settings }) }
+    match recipe.look {
+        _ if settings.is_empty() => Ok(()),
+        _ if linear => Err(SettingsError::TonesOnLinear { settings }),
+        Look::Reproduction => Err(SettingsError::TonesOnReproduction { settings }),
+        _ => Ok(()),
+    }
 }
 
 /// What is about the sensor's light has no meaning for a picture that the camera rendered.
 fn check_preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
     let asks = [
-        ("look", recipe.look == Look::Linear),
+        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear)),
         ("space", recipe.output.space == OutputSpace::Camera),
         ("profile", matches!(settings.profile, ProfileChoice::File(_))),
         ("engine", settings.engine == Engine::Imagepipe),
@@ -227,6 +260,8 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
         ("space", recipe.output.space == OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB)),
         ("bits", recipe.output.bits != Bits::Float),
         ("look", recipe.look == fixed.look),
+        ("gamut", recipe.gamut == fixed.gamut),
+        ("exposure-from-chart", settings.chart.shot == ChartShot::None),
         ("exposure", recipe.exposure == fixed.exposure),
         ("white-balance", recipe.balance == fixed.balance),
         ("highlights", recipe.highlights == fixed.highlights),
@@ -249,6 +284,24 @@ mod tests {
     fn settings(look: Look, space: Option<&str>, bits: Option<Bits>) -> Settings {
         let recipe = Recipe { look, ..Recipe::default() };
         Settings { recipe, space: space.map(|s| super::space(s).unwrap()), bits, ..Settings::default() }
+    }
+
+    /// Settings of a reproduction.
+    fn with_chart(shot: &str, change: impl FnOnce(&mut Settings)) -> Settings {
+        let mut settings = settings(Look::Reproduction, None, None);
+        Key::named("exposure-from-chart").apply(shot, &mut settings).unwrap();
+        change(&mut settings);
+        settings
+    }
+
+    #[test]
+    fn a_reproduction_goes_into_every_space_in_8_and_16_bits() {
+        for (name, _) in SPACES {
+            for bits in [Bits::Eight, Bits::Sixteen] {
+                assert!(settings(Look::Reproduction, Some(name), Some(bits)).resolve(Format::Tiff).is_ok());
+            }
+        }
+        assert_eq!(settings(Look::Reproduction, None, None).default_format(), Format::Tiff);
     }
 
     #[test]
@@ -277,6 +330,10 @@ mod tests {
             (settings(Look::Neutral, Some("camera"), None), Format::Jpeg, ".exr"),
             (settings(Look::Neutral, None, Some(Bits::Sixteen)), Format::Jpeg, "16 bits"),
             (settings(Look::Neutral, Some("adobe-rgb"), None), Format::Exr, "linear"),
+            (with_chart("auto", |s| s.recipe.exposure.auto = true), Format::Tiff, "auto-exposure"),
+            (with_chart("auto", |s| s.space = space("camera")), Format::Tiff, "space"),
+            (with_chart("off", |s| s.chart.black = true), Format::Tiff, "exposure-from-chart"),
+            (with_chart("a.nef", |s| s.recipe.tones.saturation = 1.2), Format::Tiff, "for saturation"),
         ] {
             let message = settings.resolve(format).unwrap_err().to_string();
             assert!(message.contains(word), "{message}");

@@ -3,14 +3,16 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
+use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
 };
 use super::setting::{Changes, Group, Kind, Setting};
-use super::text::{NotAValue, amount, balance, light, number, one_of, profile, space};
+use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{BLACK, CONTRAST, HIGHLIGHTS as HIGHLIGHTS_TONE, SATURATION, SHADOWS, VIBRANCE, WHITE};
 use super::words::{
-    AUTO, BITS, CHROMA, DECODERS, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
+    AUTO, BITS, CHROMA, COMPRESSION, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS,
+    LOOKS, SWITCH, plain,
 };
 
 /// Writes what a text means into its place.
@@ -20,7 +22,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 39] = [
+pub const SETTINGS: [Setting; 45] = [
     Setting {
         name: "format",
         alias: None,
@@ -88,6 +90,18 @@ pub const SETTINGS: [Setting; 39] = [
         set: |to, text| put(&mut to.encode.subsampling, one_of(&CHROMA, text)),
     },
     Setting {
+        name: "compression",
+        alias: None,
+        noun: "compression",
+        kind: Kind::Words(const { &plain(&COMPRESSION) }),
+        default: "deflate",
+        group: Group::Output,
+        placeholder: "",
+        help: "Compression of TIFF",
+        changes: Changes::Encoding,
+        set: |to, text| put(&mut to.encode.compression, one_of(&COMPRESSION, text)),
+    },
+    Setting {
         name: "exposure",
         alias: None,
         noun: "exposure",
@@ -111,22 +125,27 @@ pub const SETTINGS: [Setting; 39] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.exposure.auto, one_of(&SWITCH, text)),
     },
+    EXPOSURE_FROM_CHART,
+    BLACK_FROM_CHART,
+    CHART_LAYOUT,
+    CHART_REFERENCE,
     DPI,
     Setting {
         name: "white-balance",
         alias: Some("wb"),
         noun: "white balance",
         kind: Kind::Text {
-            form: "as-shot, daylight, auto, a temperature with or without tint (5200K or 5200K,+8), a grey spot \
+            form: "as-shot, daylight, auto, chart, a temperature with or without tint (5200K or 5200K,+8), a grey spot \
                    (spot:X,Y or spot:X,Y,SIDE), or multipliers (2.1,1,1.5)",
             example: "\"5200K\" or \"2.1,1,1.5\"",
         },
         default: "as-shot",
         group: Group::Picture,
         placeholder: "WB",
-        help: "as-shot, daylight, auto, 5200K, 5200K,+8 (tint), spot:X,Y[,SIDE] (grey in the picture), or R,G,B",
+        help: "as-shot, daylight, auto, 5200K, 5200K,+8 (tint), spot:X,Y[,SIDE] (grey in the picture), R,G,B, or chart (by \
+               the greys of `--exposure-from-chart`)",
         changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.balance, balance(text)),
+        set: set_balance,
     },
     Setting {
         name: "look",
@@ -136,9 +155,22 @@ pub const SETTINGS: [Setting; 39] = [
         default: "neutral",
         group: Group::Picture,
         placeholder: "",
-        help: "Rendering from scene to display; linear is strict: numbers proportional to light, nothing automatic",
+        help: "Rendering from scene to display; reproduction shows an original as it was measured; linear is strict: numbers \
+               proportional to light, nothing automatic",
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.look, one_of(&LOOKS, text)),
+    },
+    Setting {
+        name: "gamut",
+        alias: None,
+        noun: "way with the gamut",
+        kind: Kind::Words(const { &plain(&GAMUT) }),
+        default: AUTO,
+        group: Group::Picture,
+        placeholder: "",
+        help: "What becomes of colours that the output's space cannot show",
+        changes: Changes::Picture,
+        set: |to, text| put(&mut to.recipe.gamut, one_of(&GAMUT, text)),
     },
     CONTRAST,
     SHADOWS,

@@ -32,7 +32,7 @@ impl NotAValue {
     /// The path is relative to a folder whose name is no UTF-8.
     pub(crate) fn not_utf8(text: &str) -> Self {
         let allowed = "an absolute path, because the recipe's folder has a name that is not UTF-8".to_owned();
-        Self { text: text.to_owned(), noun: "usable profile", allowed }
+        Self { text: text.to_owned(), noun: "usable path", allowed }
     }
 
     pub(super) fn plain(text: &str, noun: &'static str, allowed: impl Into<String>) -> Self {
@@ -49,9 +49,10 @@ impl Setting {
             Kind::Number { least, most, whole: true, .. } => format!("a whole number in {least}..={most}"),
             Kind::Number { least, most, unit, .. } => format!("a number of {unit} from {least} to {most}"),
             Kind::Text { form, .. } => form.to_owned(),
-            Kind::File(words) => {
+            Kind::File(words) if self.name == "profile" => {
                 format!("a file, the name of a camera with a profile, {}", words.join(" or "))
             }
+            Kind::File(words) => format!("a file, a name, {}", words.join(" or ")),
         }
     }
 
@@ -203,7 +204,9 @@ pub fn numbers<T: std::str::FromStr>(text: &str) -> Option<Vec<T>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::words::{BITS, CHROMA, DEMOSAIC, ENGINES, FORMATS, HIGHLIGHTS, LOOKS};
+    use super::super::words::{
+        BITS, CHROMA, COMPRESSION, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, LOOKS,
+    };
     use super::super::{Key, Settings};
     use super::*;
     use darkroot_encode::Format;
@@ -261,6 +264,8 @@ mod tests {
         }
         same(&LOOKS);
         same(&HIGHLIGHTS);
+        same(&GAMUT);
+        same(&COMPRESSION);
         same(&DEMOSAIC);
         same(&ENGINES);
         same(&DECODERS);

@@ -1,7 +1,7 @@
 //! The words that settings of the table have for their values.
 
-use darkroot_develop::{Bits, Demosaic, Highlights, HotPixels, Look};
-use darkroot_encode::{ChromaSubsampling, Format};
+use darkroot_develop::{Bits, Demosaic, Gamut, Highlights, HotPixels, Look};
+use darkroot_encode::{ChromaSubsampling, Format, TiffCompression};
 use darkroot_raw::Decoder;
 
 use super::Engine;
@@ -30,7 +30,7 @@ pub(super) const fn plain<T, const N: usize>(words: &[Word<T>; N]) -> [Word<()>;
 pub(super) const AUTO: &str = "auto";
 
 pub(super) const FORMATS: [Word<Option<Format>>; 8] = [
-    word(AUTO, None, "By the output's ending, else JPEG, or TIFF for linear light"),
+    word(AUTO, None, "By the output's ending, else JPEG, or TIFF for reproductions and linear light"),
     either("jpeg", "jpg", Some(Format::Jpeg)),
     word("png", Some(Format::Png), ""),
     either("tiff", "tif", Some(Format::Tiff)),
@@ -51,16 +51,26 @@ pub(super) const CHROMA: [Word<ChromaSubsampling>; 3] = [
     word("420", ChromaSubsampling::S420, ""),
 ];
 pub(super) const SWITCH: [Word<bool>; 2] = [word("true", true, ""), word("false", false, "")];
-pub(super) const LOOKS: [Word<Look>; 4] = [
+pub(super) const LOOKS: [Word<Look>; 5] = [
     word("neutral", Look::Neutral, "Gentle contrast, soft highlights, colours as measured"),
     word("vivid", Look::Vivid, "More contrast and chroma"),
     word("flat", Look::Flat, "Low contrast, for further editing"),
+    word("reproduction", Look::Reproduction, "Colorimetric, no tone curve: an original as it was measured"),
     word("linear", Look::Linear, "Strictly scene-linear, for measurement"),
 ];
 pub(super) const HIGHLIGHTS: [Word<Highlights>; 3] = [
     word("rebuild", Highlights::Rebuild, "Estimate clipped channels from the others"),
     word("clip", Highlights::Clip, "Cut all channels where the first one clips"),
     word("keep", Highlights::Keep, "Leave the values as they are"),
+];
+pub(super) const GAMUT: [Word<Gamut>; 3] = [
+    word(AUTO, Gamut::Auto, "Cut in the reproduction look, mapped in the others"),
+    word("clip", Gamut::Clip, "Cut each channel; a note says how much that was"),
+    word("map", Gamut::Map, "Less chroma at the same hue and lightness"),
+];
+pub(super) const COMPRESSION: [Word<TiffCompression>; 2] = [
+    word("deflate", TiffCompression::Deflate, "Lossless"),
+    word("none", TiffCompression::None, "Any program reads it, and guidelines for archives ask for it"),
 ];
 pub(super) const HOT_PIXELS: [Word<HotPixels>; 2] = [
     word(AUTO, HotPixels::Auto, "They take the light of those around them; stars stay"),

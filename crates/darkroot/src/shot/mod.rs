@@ -3,7 +3,7 @@
 //! Files are read here; the science is that of [`darkroot_calibrate::shot`].
 
 mod light;
-mod rendered;
+pub(crate) mod rendered;
 mod view;
 
 use std::path::{Path, PathBuf};
@@ -105,9 +105,17 @@ pub fn open(
     Ok((shot, view))
 }
 
-/// Where the chart is, by hand or by detection.
 fn locate(view: &View, layout: &ChartLayout, options: &ShotOptions) -> Result<Place, ChartError> {
-    let place = match &options.corners {
+    locate_in(view, layout, options.corners.as_ref())
+}
+
+/// Where the chart is, by hand or by detection.
+pub(crate) fn locate_in(
+    view: &View,
+    layout: &ChartLayout,
+    corners: Option<&Quad>,
+) -> Result<Place, ChartError> {
+    let place = match corners {
         Some(corners) => find_chart::by_hand(layout, corners)?,
         None => find_chart::best(view, layout)?,
     };
@@ -123,7 +131,7 @@ fn locate(view: &View, layout: &ChartLayout, options: &ShotOptions) -> Result<Pl
 }
 
 /// Measures, corrects and judges a chart whose place is known.
-fn measured(
+pub(crate) fn measured(
     path: &Path,
     view: &View,
     place: Place,

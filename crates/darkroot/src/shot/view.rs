@@ -5,7 +5,7 @@ use std::path::Path;
 use darkroot_calibrate::shot::SensorLight;
 use darkroot_develop::{CameraMatrix, Frame};
 use darkroot_photo::metadata::{Directory, tag};
-use darkroot_photo::{AsShot, Camera, Layout, Orientation, Rect, Size};
+use darkroot_photo::{AsShot, Camera, Layout, Mosaic, Orientation, Rect, Size};
 
 use super::rendered;
 use crate::fault::ChartError;
@@ -48,6 +48,14 @@ impl View {
         let bytes = files::read(path)?;
         let photo = Photo::open_with(&bytes, settings.decoder, &settings.limits)
             .map_err(|source| Error::Raw { path: path.to_owned(), source })?;
+        Self::of(path, &photo)
+    }
+
+    /// A raw file that is decoded already.
+    ///
+    /// # Errors
+    /// A sensor that sees no colours.
+    pub(crate) fn of(path: &Path, photo: &Photo) -> Result<Self, Error> {
         let (capture, analysis) = (photo.capture(), photo.analyse_as_asked());
         if matches!(capture.counts.layout(), Layout::Monochrome) {
             return Err(Error::chart(path, ChartError::Monochrome));
@@ -80,10 +88,14 @@ impl View {
         if !rendered::is_rendered(path) {
             return Self::open(path, settings);
         }
-        let light = rendered::read(path)?;
+        Ok(Self::of_picture(rendered::read(path)?))
+    }
+
+    /// A picture that was rendered, as linear light.
+    pub(crate) fn of_picture(light: Mosaic<f32>) -> Self {
         let size = light.size;
         let name = |s: &str| s.to_owned();
-        Ok(Self {
+        Self {
             camera: Camera {
                 make: name("rendered"),
                 model: name("picture"),
@@ -98,7 +110,7 @@ impl View {
             as_shot: None,
             exposure_seconds: None,
             date: None,
-        })
+        }
     }
 
     /// Common name of the camera.

@@ -8,8 +8,25 @@ use crate::page::{STYLE, page};
 /// A line of a plot: name, colour, values.
 type Series<'a> = (&'a str, &'a str, Vec<f64>);
 
-/// The history of a log as a page with plots: mean and largest error, and the drift of white, shot by shot.
+/// The history of a log as a page with plots.
 pub fn history(lines: &[LogLine]) -> String {
+    let failed = lines.iter().filter(|l| l.outcome == Outcome::Failed).count();
+    let css = format!("{STYLE}{HISTORY_STYLE}");
+    page(
+        "History",
+        &css,
+        html! {
+            h1 { (lines.len()) " shots, " (failed) " failed" }
+            (plots_of(lines))
+        },
+    )
+}
+
+/// Rules of a page with plots of a log.
+pub(crate) const HISTORY_STYLE: &str = ".plot{width:100%;height:auto}";
+
+/// Mean and largest error, and the drift of white, shot by shot.
+pub(crate) fn plots_of(lines: &[LogLine]) -> Markup {
     let first = lines.first().map_or([1.0; 3], |l| l.white);
     let drift = |c: usize| lines.iter().map(|l| 100.0 * (l.white[c] / first[c] - 1.0)).collect::<Vec<_>>();
     let errors = [
@@ -18,19 +35,13 @@ pub fn history(lines: &[LogLine]) -> String {
     ];
     let white = [("red", "#b00020", drift(0)), ("green", "#2d7a2d", drift(1)), ("blue", "#1f5fa8", drift(2))];
     let failed = lines.iter().filter(|l| l.outcome == Outcome::Failed).count();
-    let css = format!("{STYLE}.plot{{width:100%;height:auto}}");
-    page(
-        "History",
-        &css,
-        html! {
-            h1 { (lines.len()) " shots, " (failed) " failed" }
-            h2 { "Errors" }
-            (plot(lines, &errors))
-            h2 { "White against the first shot, %" }
-            (plot(lines, &white))
-            @if failed > 0 { p.legend { "Hollow dots: shots that failed." } }
-        },
-    )
+    html! {
+        h2 { "Errors" }
+        (plot(lines, &errors))
+        h2 { "White against the first shot, %" }
+        (plot(lines, &white))
+        @if failed > 0 { p.legend { "Hollow dots: shots that failed." } }
+    }
 }
 
 fn plot(lines: &[LogLine], series: &[Series<'_>]) -> Markup {

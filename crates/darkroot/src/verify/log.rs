@@ -44,7 +44,7 @@ impl Outcome {
     const WORDS: [(Self, &str); 3] =
         [(Self::Passed, "pass"), (Self::Failed, "fail"), (Self::Unjudged, "unjudged")];
 
-    fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         Self::WORDS.iter().find(|(outcome, _)| *outcome == self).map_or("", |(_, word)| word)
     }
 }

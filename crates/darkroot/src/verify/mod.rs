@@ -1,6 +1,6 @@
 //! A new shot of a chart against a profile, and the log of such shots.
 
-mod history;
+pub(crate) mod history;
 pub use history::history;
 
 mod log;

@@ -21,6 +21,8 @@ pub(super) struct Header<'a> {
     pub(super) profile: &'a [u8],
     /// Exif block that fits into a segment, or nothing.
     pub(super) exif: &'a [u8],
+    /// Packet of XMP, or nothing. One that is too large for a segment is left out.
+    pub(super) xmp: &'a [u8],
 }
 
 impl Header<'_> {
@@ -30,6 +32,11 @@ impl Header<'_> {
         segment(&mut out, 0xe0, &[b"JFIF\0", &[1, 2, 0, 0, 1, 0, 1, 0, 0]]);
         if !self.exif.is_empty() {
             segment(&mut out, 0xe1, &[b"Exif\0\0", self.exif]);
+        }
+        // XMP specification, part 3, 1.1.3.
+        const XMP: &[u8] = b"http://ns.adobe.com/xap/1.0/\0";
+        if (1..=SEGMENT - XMP.len()).contains(&self.xmp.len()) {
+            segment(&mut out, 0xe1, &[XMP, self.xmp]);
         }
         const ICC: &[u8] = b"ICC_PROFILE\0";
         let parts = self.profile.chunks(SEGMENT - ICC.len() - 2);

@@ -50,6 +50,7 @@ pub(crate) fn write<T: Sample>(
         restart: if size.height > rows { (units * high) as u16 } else { 0 },
         profile: &profile_of(space),
         exif: &block_that_fits(metadata)?,
+        xmp: exif::xmp(metadata),
     };
     out.write_all(&header.bytes()).map_err(Error::Io)?;
     let scan = Scan::new(subsampling, options.quality);

@@ -40,6 +40,12 @@ pub(crate) fn write<T: Sample>(
     info.exif_metadata = (!block.is_empty()).then_some(Cow::Owned(block));
     let mut file = Encoder::with_info(out, info).and_then(Encoder::write_header).map_err(error)?;
 
+    let packet = exif::xmp(metadata);
+    if !packet.is_empty() {
+        // Not compressed, of no language (PNG 11.3.3.4; XMP specification, part 3, 1.1.5).
+        let text = [b"XML:com.adobe.xmp\0\0\0\0\0", packet].concat();
+        file.write_chunk(chunk::iTXt, &text).map_err(error)?;
+    }
     // Deflate with a window of 32 KiB, the fastest level.
     file.write_chunk(chunk::IDAT, &[0x78, 0x01]).map_err(error)?;
     let last = size.height.div_ceil(BAND_ROWS) - 1;

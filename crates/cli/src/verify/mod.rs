@@ -1,9 +1,12 @@
 //! `darkroot verify`.
 
+mod delivered;
+
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::Args;
+use darkroot::deliver::GUIDELINES;
 use darkroot::shot::Correct;
 use darkroot::store::Found;
 use darkroot::verify::{
@@ -12,21 +15,29 @@ use darkroot::verify::{
 use darkroot::{Settings, shown, write_text};
 
 use crate::profile::{ShotArgs, store};
+use crate::sandbox::Sandbox;
 use crate::{Common, Outcome};
 
-/// Judge a new shot of a chart by a profile; exit code 3 when it does not keep the limits
+/// Judge a shot of a chart by a profile, or finished pictures of a chart by its reference; exit code 3 when limits are not
+/// kept
+///
+/// `verify PROFILE SHOT` judges a raw shot. `verify PICTURE...` judges TIFF, JPEG and PNG files, Darkroot's or anyone's,
+/// through their own colour profiles, and `verify FOLDER` those of a folder that show a chart.
 #[derive(Debug, Args)]
 pub(crate) struct Verify {
-    /// Profile file, or the name of a camera with a profile
-    #[arg(required_unless_present = "history")]
-    profile: Option<String>,
+    /// A profile (a file, or the name of a camera with one) and a raw shot; or finished pictures; or a folder of them
+    #[arg(required_unless_present_any = ["history", "explain"], value_name = "PROFILE SHOT | PICTURE | FOLDER", num_args = 1..)]
+    inputs: Vec<PathBuf>,
 
-    /// Raw shot of the chart
-    #[arg(required_unless_present = "history", value_name = "SHOT")]
-    chart_shot: Option<PathBuf>,
+    /// List what each preset asks for, and where its numbers are from
+    #[arg(long)]
+    explain: bool,
 
     #[command(flatten)]
     shot: ShotArgs,
+
+    #[command(flatten)]
+    sandbox: Sandbox,
 
     /// Light of the shot: D50, A, LED-B3, 5200K, x,y, lamp.csv; the one that its white shows if not given
     #[arg(long, value_name = "LIGHT")]
@@ -40,9 +51,14 @@ pub(crate) struct Verify {
     #[arg(long, value_name = "DE")]
     max: Option<f64>,
 
-    /// Limits of a guideline: fadgi-4star, metamorfoze-full, iso19264-a
+    /// Limits of a guideline: fadgi-4star to -1star, iso19264-a to -c, metamorfoze-full, -light, -extra-light (`--explain`
+    /// lists them). Of a raw shot colours are judged, of a finished picture all that it shows
     #[arg(long, value_name = "NAME", value_parser = preset)]
-    preset: Option<Preset>,
+    preset: Option<&'static str>,
+
+    /// Write an HTML page on finished pictures: the chart as it was found, patches, limits, levels
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
 
     /// Append a line to this CSV file
     #[arg(long, value_name = "FILE")]
@@ -53,7 +69,7 @@ pub(crate) struct Verify {
     date: Option<String>,
 
     /// Plot a log over time instead, to the page given with `-o`
-    #[arg(long, value_name = "LOG", requires = "output", conflicts_with_all = ["profile", "chart_shot"])]
+    #[arg(long, value_name = "LOG", requires = "output", conflicts_with = "inputs")]
     history: Option<PathBuf>,
 
     /// Page to write
@@ -65,13 +81,11 @@ pub(crate) struct Verify {
     overwrite: bool,
 }
 
-/// Limits with the name of their guideline.
-type Preset = (&'static str, Limits);
-
-fn preset(name: &str) -> Result<Preset, String> {
-    let found = PRESETS.iter().find(|(n, _)| *n == name).copied();
-    let names: Vec<&str> = PRESETS.iter().map(|(n, _)| *n).collect();
-    found.ok_or_else(|| format!("`{name}` is no preset; there are {}", names.join(", ")))
+/// The name of a preset.
+fn preset(name: &str) -> Result<&'static str, String> {
+    let mut names = GUIDELINES.iter().flat_map(|guideline| guideline.levels).map(|level| level.preset);
+    let known = names.clone().collect::<Vec<_>>().join(", ");
+    names.find(|preset| *preset == name).ok_or_else(|| format!("`{name}` is no preset; there are {known}"))
 }
 
 impl Verify {
@@ -84,11 +98,27 @@ impl Verify {
             write_text(output, &history(&lines), self.overwrite)?;
             return Ok(Outcome::Done);
         }
-        let (Some(profile), Some(file)) = (&self.profile, &self.chart_shot) else {
-            bail!("give a profile and a shot of a chart");
+        if self.explain {
+            return delivered::explain();
+        }
+        if let Some(pictures) = delivered::pictures(&self.inputs)? {
+            return self.judge_pictures(&pictures, common);
+        }
+        common.start_threads();
+        let [profile, file] = &self.inputs[..] else {
+            bail!(
+                "give a profile and a raw shot of a chart, or finished pictures (TIFF, JPEG, PNG), or a folder of them"
+            );
         };
+        if self.report.is_some() {
+            bail!(
+                "`--report` is for finished pictures; `darkroot profile --report` writes one on a raw shot"
+            );
+        }
+        let Some(profile) = profile.to_str() else { bail!("the profile's name is not UTF-8") };
         let Found { profile, place } = store().choose(profile)?;
         let request = self.shot.request(&[], &[], None, "", Correct::Never)?;
+        let of_preset = self.limits_of_preset()?;
         let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
         let judge = || verify(&profile, file, light.as_ref(), &request, &Settings::default());
         let found = match self.shot.deadline.over(file, 0, |_| (), judge) {
@@ -100,12 +130,15 @@ impl Verify {
         };
         let judgement = &found.judgement;
         let mut broken = self.own_limits().broken(judgement);
-        broken.extend(self.preset.iter().flat_map(|(_, limits)| limits.broken(judgement)));
+        broken.extend(of_preset.broken(judgement));
         if !common.quiet {
             say(file, &found, self.light.is_none());
         }
         if let Some(log) = &self.log {
-            append(log, &self.log_line(profile.camera().name(), place, &found, broken.is_empty()))?;
+            append(
+                log,
+                &self.log_line(profile.camera().name(), place, &found, of_preset, broken.is_empty()),
+            )?;
         }
         for fault in &broken {
             crate::say(format_args!("error: {}: {fault}", shown(file)));
@@ -117,11 +150,31 @@ impl Verify {
         Limits { mean: self.max_mean, max: self.max, ..Limits::default() }
     }
 
-    fn log_line(&self, camera: String, profile: String, found: &Verification, keeps: bool) -> LogLine {
+    /// What the preset asks of a raw shot.
+    fn limits_of_preset(&self) -> Result<Limits> {
+        let Some(name) = self.preset else { return Ok(Limits::default()) };
+        let found = PRESETS.iter().find(|(preset, _)| *preset == name).map(|(_, limits)| *limits);
+        found.with_context(|| {
+            let names: Vec<&str> = PRESETS.iter().map(|(preset, _)| *preset).collect();
+            format!(
+                "the preset `{name}` judges finished pictures; for raw shots there are {}",
+                names.join(", ")
+            )
+        })
+    }
+
+    fn log_line(
+        &self,
+        camera: String,
+        profile: String,
+        found: &Verification,
+        of_preset: Limits,
+        keeps: bool,
+    ) -> LogLine {
         let patches = found.judgement.patches.iter().zip(&found.shot.patches);
         let brightest = patches.max_by(|(a, _), (b, _)| a.reference.y.total_cmp(&b.reference.y));
         let own = self.own_limits();
-        let limits = [own, self.preset.map_or_else(Limits::default, |(_, limits)| limits)];
+        let limits = [own, of_preset];
         let limits: Vec<String> = limits.iter().map(ToString::to_string).filter(|l| !l.is_empty()).collect();
         LogLine {
             date: self.date.clone().or_else(|| found.shot.date.clone()).unwrap_or_default(),
@@ -136,7 +189,7 @@ impl Verify {
                 false => Judged::Failed,
             },
             profile,
-            preset: self.preset.map_or_else(String::new, |(name, _)| name.to_owned()),
+            preset: self.preset.unwrap_or_default().to_owned(),
             limits: limits.join("; "),
         }
     }

@@ -1,0 +1,379 @@
+//! Spatial frequency response of slanted edges in a finished picture, after ISO 12233:2017, annex D (the method as P. D.
+//! Burns describes it: "Slanted-Edge MTF for Digital Camera and Scanner Analysis", PICS 2000).
+//!
+//! Edge of each row by the centroid of its derivative; a straight line through these; every pixel by its distance from that
+//! line, in bins of a quarter of a pixel; the derivative of these, in a Hamming window; its Fourier transform, divided by
+//! what the derivative takes.
+
+use std::f64::consts::PI;
+
+use darkroot_photo::Mosaic;
+
+use crate::Quad;
+
+/// Bins a pixel.
+const OVERSAMPLED: f64 = 4.0;
+/// Frequencies at which the response is computed: 0 to 1 cycles a pixel.
+const FREQUENCIES: usize = 201;
+/// Slants of edges that tell, degrees from the rows or columns of pixels.
+const SLANT: std::ops::RangeInclusive<f64> = 2.0..=30.0;
+/// Fewest rows that make an edge, and fewest pixels on each side of it.
+const FEWEST_ROWS: usize = 20;
+const FEWEST_BESIDE: f64 = 6.0;
+/// Most pixels on each side of an edge that are looked at.
+const MOST_BESIDE: f64 = 32.0;
+/// The part of a patch's side, about its middle, over which an edge is read.
+const ALONG: f64 = 0.6;
+/// Least contrast of an edge, darker over lighter side: below, noise tells as much.
+const CONTRAST: f64 = 0.7;
+/// Share of the gap beside a patch that is looked at.
+const INTO_GAP: f64 = 0.85;
+
+/// What an edge shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeResponse {
+    /// Response from 0 to 1 cycles a pixel, in even steps; 1 at 0.
+    pub response: Vec<f64>,
+    /// How far the edge in red and in blue lies from that in green, pixels across the edge.
+    pub shifts: [f64; 2],
+}
+
+impl EdgeResponse {
+    /// The lowest frequency, cycles a pixel, at which the response falls to a share; 1 where it does not.
+    pub fn falls_to(&self, share: f64) -> f64 {
+        let step = 1.0 / (FREQUENCIES - 1) as f64;
+        let below = self.response.windows(2).position(|pair| pair[1] < share);
+        below.map_or(1.0, |i| {
+            let (high, low) = (self.response[i], self.response[i + 1]);
+            step * (i as f64 + (high - share) / (high - low).max(1e-12))
+        })
+    }
+
+    /// The largest response at a frequency above 0.05 and up to half a cycle a pixel. Lower ones are bound to 1.
+    pub fn peak(&self) -> f64 {
+        let last = (FREQUENCIES - 1) / 2;
+        self.response[FREQUENCIES / 20..=last].iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// The edges of patches towards what lies around them. `patches` are whole patches in pixels of the picture, `gap` is the
+/// width of what lies between them as a share of a patch, `luminance` how much red, green and blue count.
+pub fn responses(light: &Mosaic<f32>, luminance: [f64; 3], patches: &[Quad], gap: f64) -> Vec<EdgeResponse> {
+    let edges = patches.iter().flat_map(|quad| (0..4).map(move |side| (quad, side)));
+    edges.filter_map(|(quad, side)| response(light, luminance, quad, side, gap)).collect()
+}
+
+/// Where a patch really is, by its four edges: how far its centre lies from that of the quadrilateral, pixels. `None` where an
+/// edge has too little contrast.
+pub(crate) fn centre_shift(
+    light: &Mosaic<f32>,
+    luminance: [f64; 3],
+    quad: &Quad,
+    gap: f64,
+) -> Option<[f64; 2]> {
+    let seen = |rgb: [f64; 3]| (0..3).map(|c| luminance[c] * rgb[c]).sum::<f64>();
+    let mut shift = [0.0; 2];
+    for side in 0..4 {
+        let strip = Strip::of(light, quad, side, gap)?;
+        let line = strip.line(&seen)?;
+        let rows = (strip.rows[0] + strip.rows[1]) as f64 / 2.0;
+        let expected = strip.start + strip.slope * (rows - strip.rows[0] as f64);
+        shift[usize::from(strip.exchanged)] += (line[0] + line[1] * rows - expected) / 2.0;
+    }
+    Some(shift)
+}
+
+/// A strip across an edge, with rows that run across it: in pixels as they are, or with columns and rows exchanged.
+struct Strip<'a> {
+    light: &'a Mosaic<f32>,
+    exchanged: bool,
+    /// First and last row.
+    rows: [usize; 2],
+    /// Where the edge is expected in the first row, and how far it moves from row to row.
+    start: f64,
+    slope: f64,
+    /// Pixels on each side.
+    beside: f64,
+}
+
+fn response(
+    light: &Mosaic<f32>,
+    luminance: [f64; 3],
+    quad: &Quad,
+    side: usize,
+    gap: f64,
+) -> Option<EdgeResponse> {
+    let strip = Strip::of(light, quad, side, gap)?;
+    let seen = |rgb: [f64; 3]| (0..3).map(|c| luminance[c] * rgb[c]).sum::<f64>();
+    let line = strip.line(&seen)?;
+    if !SLANT.contains(&line[1].atan().to_degrees().abs()) {
+        return None;
+    }
+    let response = transform(&strip.spread(line, &seen)?)?;
+    let middle = (strip.rows[0] + strip.rows[1]) as f64 / 2.0;
+    let across = 1.0 / line[1].hypot(1.0);
+    let place = |c: usize| strip.line(&|rgb: [f64; 3]| rgb[c]).map(|l| across * (l[0] + l[1] * middle));
+    let green = place(1)?;
+    Some(EdgeResponse { response, shifts: [place(0)? - green, place(2)? - green] })
+}
+
+impl<'a> Strip<'a> {
+    fn of(light: &'a Mosaic<f32>, quad: &Quad, side: usize, gap: f64) -> Option<Self> {
+        let (from, to) = (quad[side], quad[(side + 1) % 4]);
+        let behind = quad[(side + 3) % 4];
+        let exchanged = (to[0] - from[0]).abs() > (to[1] - from[1]).abs();
+        let turned = |p: [f64; 2]| if exchanged { [p[1], p[0]] } else { p };
+        let ([x0, y0], [x1, y1], back) = (turned(from), turned(to), turned(behind));
+        let length = (x1 - x0).hypot(y1 - y0);
+        let depth = (back[0] - x0).hypot(back[1] - y0);
+        let beside = (INTO_GAP * gap * length.min(depth)).min(depth / 3.0).min(MOST_BESIDE);
+        if beside < FEWEST_BESIDE || !length.is_finite() {
+            return None;
+        }
+        let slope = (x1 - x0) / (y1 - y0);
+        let (low, high) = (y0.min(y1), y0.max(y1));
+        let cut = (high - low) * (1.0 - ALONG) / 2.0;
+        let (first, last) = ((low + cut).ceil(), (high - cut).floor());
+        let (height, width) = if exchanged {
+            (light.size.width as f64, light.size.height as f64)
+        } else {
+            (light.size.height as f64, light.size.width as f64)
+        };
+        let at = |y: f64| x0 + slope * (y - y0);
+        let inside = [first, last].iter().all(|y| {
+            // The line that is found may lie half a side away.
+            let reach = 1.5 * beside + 2.0;
+            *y >= 0.0 && *y < height && at(*y) - reach >= 0.0 && at(*y) + reach < width
+        });
+        if !inside || last - first < FEWEST_ROWS as f64 {
+            return None;
+        }
+        let rows = [first as usize, last as usize];
+        Some(Self { light, exchanged, rows, start: at(first), slope, beside })
+    }
+
+    fn pixel(&self, x: usize, y: usize, seen: &dyn Fn([f64; 3]) -> f64) -> f64 {
+        let (x, y) = if self.exchanged { (y, x) } else { (x, y) };
+        let first = 3 * (y * self.light.size.width + x);
+        seen([0, 1, 2].map(|c| f64::from(self.light.samples[first + c])))
+    }
+
+    /// Columns about a place.
+    fn columns(&self, middle: f64) -> std::ops::RangeInclusive<usize> {
+        (middle - self.beside).ceil() as usize..=(middle + self.beside).floor() as usize
+    }
+
+    /// The edge as a line: its column in row 0, and its slope. `None` where it has too little contrast or is none.
+    fn line(&self, seen: &dyn Fn([f64; 3]) -> f64) -> Option<[f64; 2]> {
+        let mut line = [self.start - self.slope * self.rows[0] as f64, self.slope];
+        for pass in 0..3 {
+            let mut places = Vec::new();
+            for y in self.rows[0]..=self.rows[1] {
+                let middle = line[0] + line[1] * y as f64;
+                // The first pass takes all of the strip; then a window follows the edge.
+                let reach = if pass == 0 { f64::INFINITY } else { self.beside };
+                places.push([y as f64, self.centroid(y, middle, reach, seen)?]);
+            }
+            line = fitted(&places)?;
+            let strayed = [self.rows[0], self.rows[1]].into_iter().any(|y| {
+                let here = line[0] + line[1] * y as f64;
+                (here - self.start - self.slope * (y - self.rows[0]) as f64).abs() > self.beside / 2.0
+            });
+            if strayed {
+                return None;
+            }
+        }
+        Some(line)
+    }
+
+    /// Centroid of the derivative of a row; columns are those of the strip as it was expected.
+    fn centroid(&self, y: usize, middle: f64, reach: f64, seen: &dyn Fn([f64; 3]) -> f64) -> Option<f64> {
+        let expected = self.start + self.slope * (y - self.rows[0]) as f64;
+        let columns = self.columns(expected);
+        let values: Vec<f64> = columns.clone().map(|x| self.pixel(x, y, seen)).collect();
+        let (mut sum, mut moment) = (0.0, 0.0);
+        for (i, pair) in values.windows(2).enumerate() {
+            let place = (*columns.start() + i) as f64 + 0.5;
+            let away = (place - middle) / reach;
+            let weight = if away.abs() < 1.0 { 0.54 + 0.46 * (PI * away).cos() } else { 0.0 };
+            sum += weight * (pair[1] - pair[0]);
+            moment += weight * (pair[1] - pair[0]) * place;
+        }
+        let ends = [values.first()?, values.last()?].map(|v| v.max(0.0));
+        let told = ends[0].min(ends[1]) < CONTRAST * ends[0].max(ends[1]);
+        (told && sum.abs() > 0.0).then(|| moment / sum).filter(|place| place.is_finite())
+    }
+
+    /// The edge in quarters of a pixel, from one side to the other; bins without a pixel lie between their neighbours.
+    fn spread(&self, line: [f64; 2], seen: &dyn Fn([f64; 3]) -> f64) -> Option<Vec<f64>> {
+        let across = 1.0 / line[1].hypot(1.0);
+        let half = ((self.beside - 1.0) * across * OVERSAMPLED).floor() as isize;
+        let count = (2 * half + 1) as usize;
+        let mut bins = vec![(0.0, 0usize); count];
+        for y in self.rows[0]..=self.rows[1] {
+            let middle = line[0] + line[1] * y as f64;
+            for x in self.columns(middle) {
+                let bin = ((x as f64 - middle) * across * OVERSAMPLED).round() as isize + half;
+                if let Some(bin) = usize::try_from(bin).ok().and_then(|bin| bins.get_mut(bin)) {
+                    *bin = (bin.0 + self.pixel(x, y, seen), bin.1 + 1);
+                }
+            }
+        }
+        let mut edge: Vec<f64> = Vec::with_capacity(count);
+        for i in 0..count {
+            let mean = |&(sum, n): &(f64, usize)| (n > 0).then(|| sum / n as f64);
+            let here = mean(&bins[i]);
+            let between = || Some((edge.last()? + mean(bins.get(i + 1)?)?) / 2.0);
+            let value = here.or_else(between)?;
+            edge.push(value);
+        }
+        Some(edge)
+    }
+}
+
+/// A straight line through places (row, column): column in row 0, and slope.
+fn fitted(places: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let count = places.len() as f64;
+    let mean = [0, 1].map(|k| places.iter().map(|p| p[k]).sum::<f64>() / count);
+    let squares: f64 = places.iter().map(|p| (p[0] - mean[0]).powi(2)).sum();
+    let product: f64 = places.iter().map(|p| (p[0] - mean[0]) * (p[1] - mean[1])).sum();
+    let slope = product / squares;
+    slope.is_finite().then(|| [mean[1] - slope * mean[0], slope])
+}
+
+/// The response of an edge in quarters of a pixel.
+fn transform(edge: &[f64]) -> Option<Vec<f64>> {
+    let spread: Vec<f64> = edge.windows(3).map(|three| (three[2] - three[0]) / 2.0).collect();
+    let weight: f64 = spread.iter().sum();
+    let middle = spread.iter().enumerate().map(|(i, v)| i as f64 * v).sum::<f64>() / weight;
+    if !middle.is_finite() {
+        return None;
+    }
+    let reach = middle.max(spread.len() as f64 - 1.0 - middle);
+    let windowed: Vec<f64> = spread
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v * (0.54 + 0.46 * (PI * (i as f64 - middle) / reach).cos()))
+        .collect();
+    let at = |frequency: f64| {
+        let turn = 2.0 * PI * frequency / OVERSAMPLED;
+        let (mut real, mut imaginary) = (0.0, 0.0);
+        for (i, v) in windowed.iter().enumerate() {
+            real += v * (turn * i as f64).cos();
+            imaginary += v * (turn * i as f64).sin();
+        }
+        // A difference over two bins takes sin(x)/x of what there is.
+        let derivative = if turn > 0.0 { turn.sin() / turn } else { 1.0 };
+        real.hypot(imaginary) / derivative
+    };
+    let none = at(0.0);
+    let response: Vec<f64> =
+        (0..FREQUENCIES).map(|i| at(i as f64 / (FREQUENCIES - 1) as f64) / none).collect();
+    response.iter().all(|v| v.is_finite()).then_some(response)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use darkroot_photo::{Layout, Size};
+
+    const SIZE: Size = Size { width: 160, height: 160 };
+    /// A patch that stands five degrees from the rows.
+    const PATCH: Quad = [[35.0, 45.0], [115.0, 38.0], [122.0, 118.0], [42.0, 125.0]];
+
+    /// Signed distance inside of a convex patch, pixels.
+    fn inside(x: f64, y: f64) -> f64 {
+        let side = |i: usize| {
+            let ([ax, ay], [bx, by]) = (PATCH[i], PATCH[(i + 1) % 4]);
+            ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / (bx - ax).hypot(by - ay)
+        };
+        (0..4).map(side).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The normal distribution's integral (Abramowitz and Stegun, 7.1.26: wrong by 1.5e-7).
+    fn normal(v: f64) -> f64 {
+        let x = v.abs() / 2f64.sqrt();
+        let t = 1.0 / (1.0 + 0.327_591_1 * x);
+        let series = t
+            * (0.254_829_592
+                + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
+        let half = 0.5 * (1.0 - series * (-x * x).exp());
+        if v < 0.0 { 0.5 - half } else { 0.5 + half }
+    }
+
+    /// A picture of the patch under a Gaussian blur of `sigma` pixels, each channel moved along x.
+    fn picture(sigma: f64, shifts: [f64; 3], sharpened: f64) -> Mosaic<f32> {
+        let mut samples = Vec::new();
+        for y in 0..SIZE.height {
+            for x in 0..SIZE.width {
+                for shift in shifts {
+                    let at = |s: f64| normal(inside(x as f64 - shift, y as f64) / s);
+                    let light = at(sigma) + sharpened * (at(sigma) - at(2.5 * sigma));
+                    samples.push((0.1 + 0.7 * light) as f32);
+                }
+            }
+        }
+        Mosaic { size: SIZE, layout: Layout::Rgb, samples }
+    }
+
+    fn seen(picture: &Mosaic<f32>) -> Vec<EdgeResponse> {
+        responses(picture, [0.2, 0.7, 0.1], &[PATCH], 0.3)
+    }
+
+    #[test]
+    fn the_response_is_that_of_the_blur() {
+        for sigma in [0.5, 0.8, 1.2] {
+            let edges = seen(&picture(sigma, [0.0; 3], 0.0));
+            assert_eq!(edges.len(), 4, "{sigma}");
+            for edge in &edges {
+                for i in 0..=100 {
+                    let f = i as f64 / 200.0;
+                    let truth = (-2.0 * (PI * sigma * f).powi(2)).exp();
+                    assert!(
+                        (edge.response[i] - truth).abs() < 0.025,
+                        "{sigma} at {f}: {} {truth}",
+                        edge.response[i]
+                    );
+                }
+                let half = (2f64.ln() / 2.0).sqrt() / (PI * sigma);
+                assert!((edge.falls_to(0.5) - half).abs() < 0.01, "{sigma}: {} {half}", edge.falls_to(0.5));
+                assert!(edge.peak() < 1.0 && edge.shifts.iter().all(|s| s.abs() < 1e-6), "{sigma}");
+            }
+        }
+    }
+
+    #[test]
+    fn sharpening_is_a_response_above_one() {
+        let peaks: Vec<f64> = seen(&picture(0.8, [0.0; 3], 0.8)).iter().map(EdgeResponse::peak).collect();
+        // 1.8 exp(-2 (pi 0.8 f)^2) - 0.8 exp(-2 (pi 2 f)^2) has its largest value near f = 0.16.
+        let truth = (0..200).map(|i| f64::from(i) / 400.0).map(|f| {
+            1.8 * (-2.0 * (PI * 0.8 * f).powi(2)).exp() - 0.8 * (-2.0 * (PI * 2.0 * f).powi(2)).exp()
+        });
+        let truth = truth.fold(0.0, f64::max);
+        assert!(peaks.iter().all(|peak| (peak - truth).abs() < 0.03), "{peaks:?} {truth}");
+    }
+
+    #[test]
+    fn channels_beside_each_other_are_told_by_how_much() {
+        let edges = seen(&picture(0.8, [0.4, 0.0, -0.2], 0.0));
+        let largest = |c: usize| edges.iter().map(|e| e.shifts[c].abs()).fold(0.0, f64::max);
+        assert!((largest(0) - 0.4).abs() < 0.02 && (largest(1) - 0.2).abs() < 0.02, "{edges:?}");
+    }
+
+    #[test]
+    fn edges_that_stand_straight_or_have_no_contrast_do_not_tell() {
+        let flat = Mosaic { size: SIZE, layout: Layout::Rgb, samples: vec![0.5; 3 * SIZE.area()] };
+        assert!(seen(&flat).is_empty());
+        let straight: Quad = [[40.0, 40.0], [120.0, 40.0], [120.0, 120.0], [40.0, 120.0]];
+        let picture = picture(0.8, [0.0; 3], 0.0);
+        let mut upright = flat.clone();
+        for (i, v) in upright.samples.iter_mut().enumerate() {
+            let inside = |v: usize| (40..120).contains(&v);
+            *v = if inside(i / 3 % SIZE.width) && inside(i / 3 / SIZE.width) { 0.8 } else { 0.1 };
+        }
+        assert!(responses(&upright, [0.2, 0.7, 0.1], &[straight], 0.3).is_empty());
+        assert!(responses(&picture, [0.2, 0.7, 0.1], &[PATCH.map(|p| p.map(|v| v * 0.1))], 0.3).is_empty());
+        let wild: Quad = [[f64::NAN, 0.0], [1e9, 0.0], [1e9, 1e9], [0.0, 1e9]];
+        assert!(responses(&picture, [0.2, 0.7, 0.1], &[wild], 0.3).is_empty());
+    }
+}
