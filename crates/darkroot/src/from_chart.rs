@@ -158,12 +158,13 @@ impl Told {
         let Some(found) = plan.colour_of(self.white).filter(|found| found.y > 0.0) else { return notes };
         plan.gain = (2f64.powf(stops) * self.luminance / found.y) as f32;
         notes.push(format!(
-            "the exposure is that of {} in {} ({}, L* {:.2}): x {:.3}",
+            "the exposure is that of {} in {} ({}, L* {:.2}): x {:.3} ({:+.2} stops)",
             self.patch,
             file_name(&self.path),
             self.chart,
             self.lightness,
-            plan.gain
+            plan.gain,
+            plan.gain.log2()
         ));
         if self.veil.iter().any(|v| v.abs() > 0.0) {
             plan.veil = [0, 1, 2].map(|c| self.veil[c] as f32 * plan.multipliers[c]);

@@ -49,8 +49,19 @@ pub struct Details {
     pub uniformity: Option<Uniformity>,
     /// Sharpness of slanted edges.
     pub edges: Option<Edges>,
+    /// Pixels an inch of the original.
+    pub scale: Option<Scale>,
     /// How far the chart's patches lie from a plane grid.
     pub distortion: Option<Distortion>,
+}
+
+/// How large the original is in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Pixels an inch, by the chart.
+    pub found: f64,
+    /// Pixels an inch that the file states, where it does.
+    pub stated: Option<f64>,
 }
 
 /// How even a picture of an even surface is.

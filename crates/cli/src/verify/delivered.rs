@@ -85,7 +85,7 @@ impl Verify {
     /// Judges finished pictures.
     pub(super) fn judge_pictures(&self, pictures: &Pictures, common: Common) -> Result<Outcome> {
         let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
-        let request = self.shot.delivery(light)?;
+        let request = self.shot.delivery(light, self.chart_pitch)?;
         self.confine(pictures, &request, common)?;
         common.start_threads();
         let (mut judged, mut without, mut unreadable) = (Vec::new(), Vec::new(), 0usize);
@@ -202,6 +202,12 @@ impl Verify {
                 "  edges ({}): SFR50 {:.3}, SFR10 {:.3} cycles a pixel, largest response {:.2}, red and blue off by {:.2} pixels",
                 edges.count, edges.sfr50, edges.sfr10, edges.peak, edges.misregistration
             ));
+        }
+        if let Some(scale) = delivery.details.scale {
+            let stated = scale.stated.map_or("states none".to_owned(), |stated| {
+                format!("stated {stated:.0}, {:+.1} %", 100.0 * (scale.found / stated - 1.0))
+            });
+            crate::say(format_args!("  scale: {:.1} pixels an inch ({stated})", scale.found));
         }
         if let Some(grid) = delivery.details.distortion {
             crate::say(format_args!(

@@ -16,7 +16,7 @@ use darkroot_encode::source_profile::LINEAR;
 use darkroot_photo::{Layout, Mosaic, Size};
 
 pub use darkroot_calibrate::delivery::{
-    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Step,
+    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Scale, Step,
     Uniformity, Verdict, preset,
 };
 pub use even::uniformity;
@@ -43,6 +43,8 @@ pub struct DeliveryRequest {
     pub exclude: Vec<String>,
     /// A picture of an even surface, delivered in the same way.
     pub flat: Option<PathBuf>,
+    /// Millimetres between the middles of two patches side by side, where they are known.
+    pub pitch: Option<f64>,
     /// The light that the chart was taken in, where it is named.
     pub light: Option<LightSource>,
     /// Judge a picture whose light or balance is another all the same.
@@ -137,6 +139,10 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         .collect();
     let details = Details {
         edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout),
+        scale: request.pitch.map(|pitch| Scale {
+            found: pitch_in_pixels(&place.patches, request.layout.columns) / (pitch / 25.4),
+            stated: opened.resolution,
+        }),
         distortion: distortion::distortion(&view.frame.light, luminance, &place.patches, &request.layout),
         uniformity: request.flat.as_deref().map(uniformity).transpose()?,
     };
@@ -163,6 +169,19 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     })
 }
 
+/// Distance between the middles of neighbours in a row, the mean over the chart.
+fn pitch_in_pixels(patches: &[Quad], columns: usize) -> f64 {
+    let middle = |quad: &Quad| [0, 1].map(|k| quad.iter().map(|p| p[k]).sum::<f64>() / 4.0);
+    let pairs = (0..patches.len().saturating_sub(1)).filter(|i| (i + 1) % columns.max(1) != 0);
+    let lengths: Vec<f64> = pairs
+        .map(|i| {
+            let ([ax, ay], [bx, by]) = (middle(&patches[i]), middle(&patches[i + 1]));
+            (bx - ax).hypot(by - ay)
+        })
+        .collect();
+    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
+}
+
 fn xyz(to_xyz: &Matrix3, rgb: [f64; 3]) -> Xyz {
     Xyz::from(to_xyz * Vector3::from(rgb))
 }
@@ -175,6 +194,8 @@ pub(crate) struct Opened {
     has_tables: bool,
     bits: u16,
     date: Option<String>,
+    /// Pixels an inch that it states.
+    resolution: Option<f64>,
     /// The light that its colours are those of.
     says: Option<LightSource>,
 }
@@ -184,6 +205,7 @@ impl Opened {
         let of_profile = |fault| Error::chart(path, ChartError::SourceProfile(fault));
         let bytes = files::read(path)?;
         let date = darkroot_encode::exif::date_of(&bytes).and_then(|text| crate::naming::date(&text));
+        let resolution = darkroot_encode::exif::resolution_of(&bytes);
         let encoded = rendered::encoded(path, &bytes)?;
         drop(bytes);
         let profile = match &encoded.icc {
@@ -200,6 +222,7 @@ impl Opened {
             has_tables: profile.has_tables(),
             bits: encoded.bits,
             date,
+            resolution,
             says: encoded.xmp.as_deref().and_then(provenance::light_in),
         })
     }

@@ -187,6 +187,10 @@ fn details(judged: &JudgedPicture) -> Markup {
         rows.push(("largest response", format!("{:.2}", edges.peak)));
         rows.push(("red and blue beside green, pixels", format!("{:.2}", edges.misregistration)));
     }
+    if let Some(scale) = details.scale {
+        rows.push(("pixels an inch, by the chart", format!("{:.1}", scale.found)));
+        rows.extend(scale.stated.map(|stated| ("pixels an inch, as stated", format!("{stated:.1}"))));
+    }
     if let Some(grid) = details.distortion {
         rows.push(("distortion of the grid, % of the diagonal", format!("{:.2}", grid.percent)));
     }
