@@ -278,7 +278,7 @@ impl Verify {
         let asked = self.asked_in_words();
         match (judged, verdicts) {
             ([one], [verdicts]) => delivered::html(one, &request.layout, asked.as_deref(), verdicts),
-            _ => delivered::table(judged, lines, asked.as_deref()),
+            _ => delivered::table(judged, &request.layout, lines, asked.as_deref(), verdicts),
         }
     }
 }

@@ -89,7 +89,7 @@ pub struct JudgedPicture {
     pub confidence: f64,
     /// The figures.
     pub delivery: Delivery,
-    /// Y of red, green and blue in the linear light that drift is told by: the brightest grey.
+    /// Linear light of the brightest grey ([`LINEAR`]), which drift is told by.
     pub white: [f64; 3],
     /// The picture, to look at.
     pub view: View,
@@ -150,7 +150,9 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     let mut delivery = darkroot_calibrate::delivery::judge(&patches, &noise, colour, &light, details);
     delivery.notes.extend(chart.notes.iter().cloned());
     check_balance(&delivery, request.accept).map_err(of_chart)?;
-    let white = delivery.greys.first().map_or([0.0; 3], |grey| grey.found.xyz(white::D50).into());
+    let brightest = delivery.greys.first().map(|grey| grey.name.clone());
+    let white = delivery.patches.iter().find(|patch| Some(&patch.name) == brightest.as_ref());
+    let white = white.map_or([0.0; 3], |patch| patch.rgb);
     Ok(JudgedPicture {
         path: path.to_owned(),
         space: opened.space,
