@@ -6,9 +6,9 @@ mod even;
 
 use std::path::{Path, PathBuf};
 
-use darkroot_calibrate::MeasuredPatch;
 use darkroot_calibrate::shot::Chart;
-use darkroot_chart::{ChartLayout, Quad, Reference, distortion, lightness_noise};
+use darkroot_calibrate::{MeasuredPatch, ShotError};
+use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, distortion, lightness_noise};
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use darkroot_encode::SourceProfile;
@@ -112,31 +112,11 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     let chart = Chart::new(&request.layout, &request.reference).map_err(|e| Error::chart(path, e))?;
     let (light, light_from) = light_of(&opened.says, request).map_err(of_chart)?;
 
-    let measured = darkroot_chart::measure(&view.frame.light, [f32::INFINITY; 3], &place.windows);
-    if let Some(i) = measured.iter().position(|m| !m.is_complete()) {
-        let patch = request.layout.patches[i].name.clone();
-        return Err(Error::chart(path, darkroot_calibrate::ShotError::TooSmall { patch }));
-    }
+    let patches = measured(&view.frame.light, &place.windows, &chart, &request.exclude)
+        .map_err(|e| Error::chart(path, e))?;
     let to_xyz = LINEAR.to_xyz_under(white::D50);
     let luminance = [0, 1, 2].map(|c| to_xyz[(1, c)]);
     let noise = lightness_noise(&view.frame.light, luminance, &place.windows);
-    let names: Vec<&str> = request.layout.patches.iter().map(|p| p.name.as_str()).collect();
-    if let Some(name) = request.exclude.iter().find(|e| !names.iter().any(|n| n.eq_ignore_ascii_case(e))) {
-        return Err(Error::chart(path, darkroot_calibrate::ShotError::NoPatch { name: name.clone() }));
-    }
-    let excluded = |name: &str| request.exclude.iter().any(|e| e.eq_ignore_ascii_case(name));
-    let patches: Vec<MeasuredPatch> = measured
-        .iter()
-        .enumerate()
-        .map(|(i, m)| MeasuredPatch {
-            name: names[i].to_owned(),
-            rgb: m.mean,
-            uncertainty: m.uncertainty(),
-            clipped: m.clipped,
-            reference: chart.colours[i].clone(),
-            excluded: excluded(names[i]).then(|| "left out by hand".to_owned()),
-        })
-        .collect();
     let details = Details {
         edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout),
         scale: request.pitch.map(|pitch| Scale {
@@ -169,6 +149,33 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         white,
         view,
     })
+}
+
+/// Measures the patches of a chart, each in linear light.
+fn measured(
+    light: &Mosaic<f32>,
+    windows: &[Quad],
+    chart: &Chart<'_>,
+    exclude: &[String],
+) -> Result<Vec<MeasuredPatch>, ShotError> {
+    let measured = darkroot_chart::measure(light, [f32::INFINITY; 3], windows);
+    let name = |i: usize| chart.layout.patches[i].name.as_str();
+    if let Some(i) = measured.iter().position(|m| !m.is_complete()) {
+        return Err(ShotError::TooSmall { patch: name(i).to_owned() });
+    }
+    let is = |i: usize, excluded: &str| name(i).eq_ignore_ascii_case(excluded);
+    if let Some(unknown) = exclude.iter().find(|e| !(0..measured.len()).any(|i| is(i, e))) {
+        return Err(ShotError::NoPatch { name: unknown.clone() });
+    }
+    let patch = |(i, m): (usize, &Measurement)| MeasuredPatch {
+        name: name(i).to_owned(),
+        rgb: m.mean,
+        uncertainty: m.uncertainty(),
+        clipped: m.clipped,
+        reference: chart.colours[i].clone(),
+        excluded: exclude.iter().any(|e| is(i, e)).then(|| "left out by hand".to_owned()),
+    };
+    Ok(measured.iter().enumerate().map(patch).collect())
 }
 
 /// Distance between the middles of neighbours in a row, the mean over the chart.
