@@ -49,10 +49,10 @@ impl EdgeResponse {
         })
     }
 
-    /// The largest response at a frequency above 0.05 and up to half a cycle a pixel. Lower ones are bound to 1.
+    /// The largest response at a frequency from 0.1 to 0.5 cycles a pixel. Lower ones are bound to 1, where noise decides.
     pub fn peak(&self) -> f64 {
         let last = (FREQUENCIES - 1) / 2;
-        self.response[FREQUENCIES / 20..=last].iter().copied().fold(0.0, f64::max)
+        self.response[FREQUENCIES / 10..=last].iter().copied().fold(0.0, f64::max)
     }
 }
 

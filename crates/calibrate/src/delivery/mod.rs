@@ -84,7 +84,7 @@ pub struct Edges {
     pub sfr50: f64,
     /// Frequency at which a tenth is left, cycles a pixel.
     pub sfr10: f64,
-    /// Largest response at any frequency up to half a cycle a pixel: above 1 the picture is sharpened.
+    /// Largest response from 0.1 to 0.5 cycles a pixel: above 1 the picture is sharpened.
     pub peak: f64,
     /// Largest distance of the edge in red or in blue from that in green, pixels.
     pub misregistration: f64,

@@ -25,7 +25,7 @@ pub enum Metric {
     Noise,
     /// Sampling efficiency: the frequency of 10 % response over half a cycle a pixel, percent.
     SamplingEfficiency,
-    /// Largest response of slanted edges up to half a cycle a pixel.
+    /// Largest response of slanted edges from 0.1 to 0.5 cycles a pixel.
     Sharpening,
     /// Distance between the edges of two channels, pixels.
     Misregistration,

@@ -179,7 +179,7 @@ fn measured(
 }
 
 /// Distance between the middles of neighbours in a row, the mean over the chart.
-fn pitch_in_pixels(patches: &[Quad], columns: usize) -> f64 {
+pub(crate) fn pitch_in_pixels(patches: &[Quad], columns: usize) -> f64 {
     let middle = |quad: &Quad| [0, 1].map(|k| quad.iter().map(|p| p[k]).sum::<f64>() / 4.0);
     let pairs = (0..patches.len().saturating_sub(1)).filter(|i| (i + 1) % columns.max(1) != 0);
     let lengths: Vec<f64> = pairs

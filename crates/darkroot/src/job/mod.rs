@@ -112,7 +112,9 @@ pub fn develop_into(
         Engine::Darkroot => {
             let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
             let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, recipe, told.as_ref())?;
-            let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), settings.dpi);
+            let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
+            let dpi = settings.dpi.or(by_chart);
+            let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), dpi);
             if recipe.look == Look::Reproduction {
                 let (profile, chart) = (chosen.as_ref(), told.as_ref());
                 let raw = (from_chart::file_name(input), hash);
