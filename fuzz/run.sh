@@ -9,14 +9,14 @@ cd "$(dirname "$0")/.."
 seconds=$1
 shift
 all=(screen flashraw rawloader develop exif opcodes preview profile dcp icc cube clf cgats cxf layout cht spectra recipe
-    journal worker picture)
+    journal worker picture delivered)
 [ $# -gt 0 ] || set -- "${all[@]}"
 
 [ -d fuzz/corpus ] || cargo run -q -p darkroot-tests --example fuzz_corpora -- fuzz/corpus
 cargo +nightly fuzz build
 for target in "$@"; do
     dictionary=text
-    case $target in screen | flashraw | rawloader | develop | exif | opcodes | preview | dcp) dictionary=tiff ;; esac
+    case $target in screen | flashraw | rawloader | develop | exif | opcodes | preview | dcp | delivered) dictionary=tiff ;; esac
     log=$(mktemp)
     # An input may take 20 s and 2 GB here, where everything is slower by the sanitizer.
     cargo +nightly fuzz run "$target" -- -dict="fuzz/$dictionary.dict" -max_total_time="$seconds" -timeout=20 \

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use darkroot::ProfileStore;
 use darkroot_colour::RgbSpace;
+use darkroot_photo::{Picture, PictureSpace, Samples, Size};
 use darkroot_profile::export::cube::{Settings as Cube, Shaper};
 use darkroot_profile::export::{clf, cube, dcp, icc};
 use darkroot_profile::{Profile, file};
@@ -47,6 +48,7 @@ fn main() {
     JOURNAL.iter().enumerate().for_each(|(n, line)| put("journal", &n.to_string(), line.as_bytes()));
     LINES.iter().enumerate().for_each(|(n, line)| put("worker", &n.to_string(), line.as_bytes()));
     pictures(&put);
+    deliveries(&put);
 }
 
 /// A profile in the forms of other programs.
@@ -80,6 +82,20 @@ fn pictures(put: &dyn Fn(&str, &str, &[u8])) {
                 put("picture", name, &fs::read(path).unwrap());
             }
         }
+    }
+}
+
+/// Finished pictures with colour profiles.
+fn deliveries(put: &dyn Fn(&str, &str, &[u8])) {
+    let (_, raw) = small_raws::all().into_iter().next().unwrap();
+    let photo = darkroot::Photo::open(&raw, &darkroot::Limits::default()).unwrap();
+    let size = Size { width: 64, height: 46 };
+    let samples = (0..3 * size.area()).map(|i| (i * 7 % 251) as u8).collect();
+    let space = PictureSpace::Rgb(RgbSpace::ECIRGB_V2);
+    let picture = Picture { size, samples: Samples::U8(samples), space };
+    for format in [darkroot::Format::Tiff, darkroot::Format::Jpeg] {
+        let bytes = darkroot::encode_picture(&picture, format, photo.capture()).unwrap();
+        put("delivered", format.extension(), &bytes);
     }
 }
 

@@ -92,6 +92,7 @@ impl Settings {
                 "" | "neutral" => Look::Neutral,
                 "vivid" => Look::Vivid,
                 "flat" => Look::Flat,
+                "reproduction" => Look::Reproduction,
                 "linear" => Look::Linear,
                 other => panic!("look `{other}`"),
             },

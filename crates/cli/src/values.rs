@@ -32,3 +32,10 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 4], String> {
         _ => Err(usage()),
     }
 }
+
+/// `--chart-pitch`.
+pub(crate) fn millimetres(text: &str) -> Result<f64, String> {
+    let length = text.trim().trim_end_matches("mm").trim_end().parse::<f64>().ok();
+    let sound = length.filter(|length| (0.1..=1000.0).contains(length));
+    sound.ok_or_else(|| format!("`{text}` is no length: write millimetres, 0.1 to 1000"))
+}

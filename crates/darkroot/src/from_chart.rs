@@ -11,6 +11,7 @@ use darkroot_photo::metadata::{Directory, tag};
 use darkroot_photo::{Camera, Capture};
 
 use crate::charts::NamedReference;
+use crate::deliver::pitch_in_pixels;
 use crate::fault::ChartError;
 use crate::light::LightSource;
 use crate::photo::Photo;
@@ -45,6 +46,8 @@ pub(crate) struct Told {
     /// Camera RGB where no light comes from, where that is to be taken off.
     pub(crate) veil: [f64; 3],
     patches: Vec<MeasuredPatch>,
+    /// Pixels between the middles of two patches.
+    pitch: f64,
     camera: Camera,
     /// Light that the settings of the camera let in, relative.
     exposure: Option<f64>,
@@ -69,7 +72,7 @@ pub(crate) fn of_file(settings: &Settings) -> Result<Option<Told>, Error> {
 /// No chart in it, or one that cannot be measured.
 pub(crate) fn of_photo(path: &Path, photo: &Photo, asked: &FromChart) -> Result<Told, Error> {
     let view = View::of(path, photo)?;
-    let (shot, chart, reference) = measured(path, &view, asked)?;
+    let Measured { shot, chart, reference, pitch } = measured(path, &view, asked)?;
     let of_chart = |fault| Error::chart(path, fault);
     let usable = shot.patches.iter().zip(&shot.measurements).filter(|(patch, _)| patch.excluded.is_none());
     let luminance = |patch: &MeasuredPatch| patch.reference.xyz_d50().y;
@@ -93,12 +96,22 @@ pub(crate) fn of_photo(path: &Path, photo: &Photo, asked: &FromChart) -> Result<
         veil: [0, 1, 2].map(|c| measurement.mean[c] - patch.rgb[c]),
         camera: shot.camera,
         patches: shot.patches,
+        pitch,
         exposure: exposure_of(photo.capture()),
     })
 }
 
-/// Finds and measures the chart; gives its title and reference, too.
-fn measured(path: &Path, view: &View, asked: &FromChart) -> Result<(Shot, String, NamedReference), Error> {
+/// A chart that was found and measured.
+struct Measured {
+    shot: Shot,
+    /// Its title.
+    chart: String,
+    reference: NamedReference,
+    /// Pixels between the middles of two patches.
+    pitch: f64,
+}
+
+fn measured(path: &Path, view: &View, asked: &FromChart) -> Result<Measured, Error> {
     let layouts: Vec<ChartLayout> = match &asked.layout {
         Some(name) => vec![charts::layout(name)?],
         None => charts::layouts().into_iter().filter(|l| charts::reference(None, l).is_ok()).collect(),
@@ -121,7 +134,8 @@ fn measured(path: &Path, view: &View, asked: &FromChart) -> Result<(Shot, String
     };
     let place = find_chart::place(found);
     let shot = shot::measured(path, view, place, &chart, Companions::default(), &options)?;
-    Ok((shot, layout.title.clone(), reference))
+    let pitch = pitch_in_pixels(&shot.windows, layout.columns);
+    Ok(Measured { shot, chart: layout.title.clone(), reference, pitch })
 }
 
 /// Light that time, aperture and sensitivity let in, relative.
@@ -132,6 +146,11 @@ fn exposure_of(capture: &Capture) -> Option<f64> {
 }
 
 impl Told {
+    /// Whole pixels an inch, where patches are so many millimetres apart.
+    pub(crate) fn dpi(&self, millimetres: f64) -> u32 {
+        (self.pitch / (millimetres / 25.4)).round().clamp(1.0, 1e6) as u32
+    }
+
     /// White-balance multipliers by the greys, as they are in a light; as under D50 where that is not known.
     pub(crate) fn balance(&self, light: Option<&LightSource>) -> Balance {
         let under = light.and_then(|light| white_under(&self.patches, light).ok());
@@ -158,12 +177,13 @@ impl Told {
         let Some(found) = plan.colour_of(self.white).filter(|found| found.y > 0.0) else { return notes };
         plan.gain = (2f64.powf(stops) * self.luminance / found.y) as f32;
         notes.push(format!(
-            "the exposure is that of {} in {} ({}, L* {:.2}): x {:.3}",
+            "the exposure is that of {} in {} ({}, L* {:.2}): x {:.3} ({:+.2} stops)",
             self.patch,
             file_name(&self.path),
             self.chart,
             self.lightness,
-            plan.gain
+            plan.gain,
+            plan.gain.log2()
         ));
         if self.veil.iter().any(|v| v.abs() > 0.0) {
             plan.veil = [0, 1, 2].map(|c| self.veil[c] as f32 * plan.multipliers[c]);

@@ -23,7 +23,7 @@ use darkroot_raw::{Decoder, Limits};
 
 use crate::estimate::Estimated;
 use crate::lens;
-use crate::settings::{Engine, ProfileChoice, Settings, SettingsError};
+use crate::settings::{ChartShot, Engine, ProfileChoice, Settings, SettingsError};
 use crate::store::{ChosenProfile, ProfileStore};
 
 /// A decoded raw file.
@@ -150,7 +150,12 @@ impl Photo {
     ) -> Result<Plan, PlanError> {
         let chosen = self.profile(store, settings)?;
         let recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
-        Ok(self.plan_with(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), recipe)?)
+        let mut plan = self.plan_with(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), recipe)?;
+        if settings.chart.shot != ChartShot::None {
+            plan.notes
+                .push("exposure, black and white of a chart are taken by jobs on files only".to_owned());
+        }
+        Ok(plan)
     }
 
     /// As [`Photo::plan`], where the profile and the recipe are known already; what the metadata tell of the lens is looked

@@ -134,8 +134,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let camera_output = recipe.output.space == OutputSpace::Camera;
     // What the camera rendered for display has its look already.
     let curve = Curve::of(recipe.look, &recipe.tones).filter(|_| !capture.rendered);
-    let camera_look = curve.is_none() && capture.rendered;
-    let reproduced = recipe.look == Look::Reproduction && !camera_look;
+    let reproduced = recipe.look == Look::Reproduction && !capture.rendered;
     let linear = curve.is_none() && !reproduced;
     let measuring = linear || camera_output;
     // Neither noise nor blur of the original's picture is anybody's to take away unasked.
@@ -172,13 +171,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         capture: Arc::clone(capture),
         light: Arc::clone(analysis.light()),
         laid,
-        noise: match demosaic {
-            Method::Lmmse => {
-                let left = denoiser.as_ref().map_or(1.0, |filter| filter.left());
-                if left > 0.0 { Noise::of(analysis.noise(), multipliers).times(left) } else { Noise::NONE }
-            }
-            _ => Noise::NONE,
-        },
+        noise: noise_left(analysis, demosaic, denoiser.as_deref(), multipliers),
         mends,
         denoiser,
         lateral,
@@ -203,6 +196,21 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         space: recipe.output.space,
         bits: recipe.output.bits,
     })
+}
+
+/// Noise that is left when a mosaic is interpolated, where that method has a bias by it.
+fn noise_left(
+    analysis: &Analysis,
+    demosaic: Method,
+    denoiser: Option<&Denoiser>,
+    multipliers: [f32; 3],
+) -> Noise {
+    let left = denoiser.map_or(1.0, Denoiser::left);
+    if demosaic == Method::Lmmse && left > 0.0 {
+        Noise::of(analysis.noise(), multipliers).times(left)
+    } else {
+        Noise::NONE
+    }
 }
 
 /// What becomes of colours that the output cannot show, as asked or as suits the look.

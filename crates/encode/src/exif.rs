@@ -52,6 +52,24 @@ pub fn date_of(file: &[u8]) -> Option<String> {
     }
 }
 
+/// Pixels an inch that a finished picture states, from the bytes of its file; `None` where it states none.
+pub fn resolution_of(file: &[u8]) -> Option<f64> {
+    const CENTIMETRE: u32 = 3;
+    const INCH: u32 = 2;
+    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(file)).ok()?;
+    let unit = exif.get_field(Tag::ResolutionUnit, In::PRIMARY).and_then(|field| field.value.get_uint(0));
+    let exif::Value::Rational(value) = &exif.get_field(Tag::XResolution, In::PRIMARY)?.value else {
+        return None;
+    };
+    let value = value.first()?.to_f64();
+    let stated = match unit {
+        Some(CENTIMETRE) => 2.54 * value,
+        None | Some(INCH) => value,
+        Some(_) => return None,
+    };
+    (stated.is_finite() && stated > 0.0).then_some(stated)
+}
+
 /// The packet of XMP, where there is one. TIFF has a field for it; other formats have a place outside of Exif.
 pub(crate) fn xmp(metadata: &Metadata) -> &[u8] {
     let packet = metadata.fields().iter().find(|field| is_xmp(field)).map(|field| &field.value);

@@ -28,7 +28,9 @@
 //! The same picture, options and metadata give the same bytes: nothing here looks at the clock, at the
 //! environment or at the number of processors.
 //!
-//! **What it does not do:** it opens no file, changes no number of the picture, and converts between neither
+//! [`SourceProfile`] goes the other way: what the numbers of a finished picture mean, by the ICC profile in it.
+//!
+//! **What it does not do:** it opens no file, changes no number of the picture that it writes, and converts between neither
 //! colour spaces nor sample types; `develop` makes the picture as the file wants it.
 
 use darkroot_photo::{Metadata, Picture};

@@ -142,6 +142,7 @@ pub const GUIDELINES: [Guideline; 3] = [
             ),
             row(Metric::Noise, &[most(1.0), most(2.0), most(3.0), most(4.0)], COMPARED),
             row(Metric::SamplingEfficiency, &[least(90.0), least(80.0), least(70.0), least(60.0)], COMPARED),
+            row(Metric::SamplingRate, &[least(396.0), least(294.0), least(242.5), least(190.0)], COMPARED),
             row(Metric::Sharpening, &[most(1.0), most(1.1), most(1.2), None], FADGI_2010),
             row(Metric::Misregistration, &[most(0.33), most(0.5), most(0.8), None], FADGI_2010),
             row(Metric::Illumination, &[most(1.0), most(3.0), most(5.0), None], FADGI_2010),

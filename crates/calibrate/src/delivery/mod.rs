@@ -49,8 +49,19 @@ pub struct Details {
     pub uniformity: Option<Uniformity>,
     /// Sharpness of slanted edges.
     pub edges: Option<Edges>,
+    /// Pixels an inch of the original.
+    pub scale: Option<Scale>,
     /// How far the chart's patches lie from a plane grid.
     pub distortion: Option<Distortion>,
+}
+
+/// How large the original is in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Pixels an inch, by the chart.
+    pub found: f64,
+    /// Pixels an inch that the file states, where it does.
+    pub stated: Option<f64>,
 }
 
 /// How even a picture of an even surface is.
@@ -73,7 +84,7 @@ pub struct Edges {
     pub sfr50: f64,
     /// Frequency at which a tenth is left, cycles a pixel.
     pub sfr10: f64,
-    /// Largest response at any frequency up to half a cycle a pixel: above 1 the picture is sharpened.
+    /// Largest response from 0.1 to 0.5 cycles a pixel: above 1 the picture is sharpened.
     pub peak: f64,
     /// Largest distance of the edge in red or in blue from that in green, pixels.
     pub misregistration: f64,

@@ -25,12 +25,14 @@ pub enum Metric {
     Noise,
     /// Sampling efficiency: the frequency of 10 % response over half a cycle a pixel, percent.
     SamplingEfficiency,
-    /// Largest response of slanted edges up to half a cycle a pixel.
+    /// Largest response of slanted edges from 0.1 to 0.5 cycles a pixel.
     Sharpening,
     /// Distance between the edges of two channels, pixels.
     Misregistration,
     /// Difference of luminance over an even surface, percent.
     Illumination,
+    /// Pixels an inch of the original.
+    SamplingRate,
 }
 
 impl Metric {
@@ -49,6 +51,7 @@ impl Metric {
             Self::Sharpening => "sharpening, largest SFR",
             Self::Misregistration => "colour misregistration, pixels",
             Self::Illumination => "illumination, largest difference, %",
+            Self::SamplingRate => "sampling rate, pixels an inch",
         }
     }
 
@@ -67,6 +70,7 @@ impl Metric {
             Self::Sharpening => "sharpening",
             Self::Misregistration => "registration",
             Self::Illumination => "illumination",
+            Self::SamplingRate => "rate",
         }
     }
 
@@ -76,7 +80,8 @@ impl Metric {
             Self::SamplingEfficiency | Self::Sharpening | Self::Misregistration => {
                 "edges of grey patches that stand 2 to 30 degrees from the rows of pixels: turn the chart a little"
             }
-            Self::Illumination => "a picture of an even surface: `--flat`",
+            Self::Illumination => "a picture of an even surface (`--flat`)",
+            Self::SamplingRate => "the distance between two patches (`--chart-pitch`)",
             Self::GainHighlights => "two greys lighter than L* 75 in the mean",
             Self::GainOther | Self::Tone | Self::WhiteBalance | Self::Noise => "grey patches",
             Self::ColourMean | Self::ColourMax | Self::ColourP90 => "patches",
@@ -141,6 +146,7 @@ impl Delivery {
             Metric::SamplingEfficiency => edges.map(|e| Found::one(100.0 * e.sfr10 / 0.5)),
             Metric::Sharpening => edges.map(|e| Found::one(e.peak)),
             Metric::Misregistration => edges.map(|e| Found::one(e.misregistration)),
+            Metric::SamplingRate => self.details.scale.map(|s| Found::one(s.found)),
             Metric::Illumination => self.details.uniformity.map(|u| Found::one(u.luminance)),
         }
     }

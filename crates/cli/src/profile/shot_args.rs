@@ -117,7 +117,7 @@ impl ShotArgs {
     }
 
     /// A request for finished pictures. What only a shot of the sensor can have is refused.
-    pub(crate) fn delivery(&self, light: Option<LightSource>) -> Result<DeliveryRequest> {
+    pub(crate) fn delivery(&self, light: Option<LightSource>, pitch: Option<f64>) -> Result<DeliveryRequest> {
         if self.dark.is_some() || self.even_out.is_some() || self.correct_glare.is_some() {
             bail!(
                 "`--dark`, `--even-out` and `--correct-glare` are for raw shots: a finished picture is judged as it is"
@@ -131,6 +131,7 @@ impl ShotArgs {
             corners: self.corners,
             exclude: self.exclude.clone(),
             flat: self.flat.clone(),
+            pitch,
             light,
             accept: self.accept,
         })

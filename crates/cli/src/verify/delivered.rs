@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use darkroot::deliver::{
-    DeliveryRequest, GUIDELINES, Grey, Guideline, JudgedPicture, Metric, Verdict, is_picture, judge, preset,
+    DeliveryRequest, Details, GUIDELINES, Grey, Guideline, JudgedPicture, Metric, Verdict, is_picture, judge,
+    preset,
 };
 use darkroot::fault::ChartError;
 use darkroot::report::delivered;
@@ -85,7 +86,7 @@ impl Verify {
     /// Judges finished pictures.
     pub(super) fn judge_pictures(&self, pictures: &Pictures, common: Common) -> Result<Outcome> {
         let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
-        let request = self.shot.delivery(light)?;
+        let request = self.shot.delivery(light, self.chart_pitch)?;
         self.confine(pictures, &request, common)?;
         common.start_threads();
         let (mut judged, mut without, mut unreadable) = (Vec::new(), Vec::new(), 0usize);
@@ -197,24 +198,7 @@ impl Verify {
         let greys: Vec<String> =
             greys.iter().map(|g| format!("{:.1} ({:+.2})", g.found.l, g.lightness_error())).collect();
         crate::say(format_args!("  greys, L* (error): {}", greys.join(", ")));
-        if let Some(edges) = delivery.details.edges {
-            crate::say(format_args!(
-                "  edges ({}): SFR50 {:.3}, SFR10 {:.3} cycles a pixel, largest response {:.2}, red and blue off by {:.2} pixels",
-                edges.count, edges.sfr50, edges.sfr10, edges.peak, edges.misregistration
-            ));
-        }
-        if let Some(grid) = delivery.details.distortion {
-            crate::say(format_args!(
-                "  grid ({} patches): distortion {:.2} % of the diagonal, {:.2} pixels",
-                grid.patches, grid.percent, grid.pixels
-            ));
-        }
-        if let Some(even) = delivery.details.uniformity {
-            crate::say(format_args!(
-                "  even surface: luminance differs by {:.1} %, L* by {:.2}, a*b* by {:.2}",
-                even.luminance, even.lightness, even.colour
-            ));
-        }
+        say_details(&delivery.details);
         for guideline in &GUIDELINES {
             let levels: Vec<String> = guideline
                 .rows
@@ -272,7 +256,35 @@ impl Verify {
         let asked = self.asked_in_words();
         match (judged, verdicts) {
             ([one], [verdicts]) => delivered::html(one, &request.layout, asked.as_deref(), verdicts),
-            _ => delivered::table(judged, lines, asked.as_deref()),
+            _ => delivered::table(judged, &request.layout, lines, asked.as_deref(), verdicts),
         }
+    }
+}
+
+/// What edges, the grid and an even surface tell.
+fn say_details(details: &Details) {
+    if let Some(edges) = details.edges {
+        crate::say(format_args!(
+            "  edges ({}): SFR50 {:.3}, SFR10 {:.3} cycles a pixel, largest response {:.2}, red and blue off by {:.2} pixels",
+            edges.count, edges.sfr50, edges.sfr10, edges.peak, edges.misregistration
+        ));
+    }
+    if let Some(scale) = details.scale {
+        let stated = scale.stated.map_or("states none".to_owned(), |stated| {
+            format!("stated {stated:.0}, {:+.1} %", 100.0 * (scale.found / stated - 1.0))
+        });
+        crate::say(format_args!("  scale: {:.1} pixels an inch ({stated})", scale.found));
+    }
+    if let Some(grid) = details.distortion {
+        crate::say(format_args!(
+            "  grid ({} patches): distortion {:.2} % of the diagonal, {:.2} pixels",
+            grid.patches, grid.percent, grid.pixels
+        ));
+    }
+    if let Some(even) = details.uniformity {
+        crate::say(format_args!(
+            "  even surface: luminance differs by {:.1} %, L* by {:.2}, a*b* by {:.2}",
+            even.luminance, even.lightness, even.colour
+        ));
     }
 }

@@ -56,6 +56,10 @@ pub(crate) struct Verify {
     #[arg(long, value_name = "NAME", value_parser = preset)]
     preset: Option<&'static str>,
 
+    /// Millimetres between the middles of two patches side by side, to tell pixels an inch of a finished picture
+    #[arg(long, value_name = "MM", value_parser = crate::values::millimetres)]
+    chart_pitch: Option<f64>,
+
     /// Write an HTML page on finished pictures: the chart as it was found, patches, limits, levels
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,

@@ -6,9 +6,9 @@ mod even;
 
 use std::path::{Path, PathBuf};
 
-use darkroot_calibrate::MeasuredPatch;
 use darkroot_calibrate::shot::Chart;
-use darkroot_chart::{ChartLayout, Quad, Reference, distortion, lightness_noise};
+use darkroot_calibrate::{MeasuredPatch, ShotError};
+use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, distortion, lightness_noise};
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use darkroot_encode::SourceProfile;
@@ -16,7 +16,7 @@ use darkroot_encode::source_profile::LINEAR;
 use darkroot_photo::{Layout, Mosaic, Size};
 
 pub use darkroot_calibrate::delivery::{
-    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Step,
+    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Scale, Step,
     Uniformity, Verdict, preset,
 };
 pub use even::uniformity;
@@ -43,6 +43,8 @@ pub struct DeliveryRequest {
     pub exclude: Vec<String>,
     /// A picture of an even surface, delivered in the same way.
     pub flat: Option<PathBuf>,
+    /// Millimetres between the middles of two patches side by side, where they are known.
+    pub pitch: Option<f64>,
     /// The light that the chart was taken in, where it is named.
     pub light: Option<LightSource>,
     /// Judge a picture whose light or balance is another all the same.
@@ -87,7 +89,7 @@ pub struct JudgedPicture {
     pub confidence: f64,
     /// The figures.
     pub delivery: Delivery,
-    /// Y of red, green and blue in the linear light that drift is told by: the brightest grey.
+    /// Linear light of the brightest grey ([`LINEAR`]), which drift is told by.
     pub white: [f64; 3],
     /// The picture, to look at.
     pub view: View,
@@ -110,33 +112,17 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     let chart = Chart::new(&request.layout, &request.reference).map_err(|e| Error::chart(path, e))?;
     let (light, light_from) = light_of(&opened.says, request).map_err(of_chart)?;
 
-    let measured = darkroot_chart::measure(&view.frame.light, [f32::INFINITY; 3], &place.windows);
-    if let Some(i) = measured.iter().position(|m| !m.is_complete()) {
-        let patch = request.layout.patches[i].name.clone();
-        return Err(Error::chart(path, darkroot_calibrate::ShotError::TooSmall { patch }));
-    }
+    let patches = measured(&view.frame.light, &place.windows, &chart, &request.exclude)
+        .map_err(|e| Error::chart(path, e))?;
     let to_xyz = LINEAR.to_xyz_under(white::D50);
     let luminance = [0, 1, 2].map(|c| to_xyz[(1, c)]);
     let noise = lightness_noise(&view.frame.light, luminance, &place.windows);
-    let names: Vec<&str> = request.layout.patches.iter().map(|p| p.name.as_str()).collect();
-    if let Some(name) = request.exclude.iter().find(|e| !names.iter().any(|n| n.eq_ignore_ascii_case(e))) {
-        return Err(Error::chart(path, darkroot_calibrate::ShotError::NoPatch { name: name.clone() }));
-    }
-    let excluded = |name: &str| request.exclude.iter().any(|e| e.eq_ignore_ascii_case(name));
-    let patches: Vec<MeasuredPatch> = measured
-        .iter()
-        .enumerate()
-        .map(|(i, m)| MeasuredPatch {
-            name: names[i].to_owned(),
-            rgb: m.mean,
-            uncertainty: m.uncertainty(),
-            clipped: m.clipped,
-            reference: chart.colours[i].clone(),
-            excluded: excluded(names[i]).then(|| "left out by hand".to_owned()),
-        })
-        .collect();
     let details = Details {
         edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout),
+        scale: request.pitch.map(|pitch| Scale {
+            found: pitch_in_pixels(&place.patches, request.layout.columns) / (pitch / 25.4),
+            stated: opened.resolution,
+        }),
         distortion: distortion::distortion(&view.frame.light, luminance, &place.patches, &request.layout),
         uniformity: request.flat.as_deref().map(uniformity).transpose()?,
     };
@@ -144,7 +130,9 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     let mut delivery = darkroot_calibrate::delivery::judge(&patches, &noise, colour, &light, details);
     delivery.notes.extend(chart.notes.iter().cloned());
     check_balance(&delivery, request.accept).map_err(of_chart)?;
-    let white = delivery.greys.first().map_or([0.0; 3], |grey| grey.found.xyz(white::D50).into());
+    let brightest = delivery.greys.first().map(|grey| grey.name.clone());
+    let white = delivery.patches.iter().find(|patch| Some(&patch.name) == brightest.as_ref());
+    let white = white.map_or([0.0; 3], |patch| patch.rgb);
     Ok(JudgedPicture {
         path: path.to_owned(),
         space: opened.space,
@@ -163,6 +151,46 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     })
 }
 
+/// Measures the patches of a chart, each in linear light.
+fn measured(
+    light: &Mosaic<f32>,
+    windows: &[Quad],
+    chart: &Chart<'_>,
+    exclude: &[String],
+) -> Result<Vec<MeasuredPatch>, ShotError> {
+    let measured = darkroot_chart::measure(light, [f32::INFINITY; 3], windows);
+    let name = |i: usize| chart.layout.patches[i].name.as_str();
+    if let Some(i) = measured.iter().position(|m| !m.is_complete()) {
+        return Err(ShotError::TooSmall { patch: name(i).to_owned() });
+    }
+    let is = |i: usize, excluded: &str| name(i).eq_ignore_ascii_case(excluded);
+    if let Some(unknown) = exclude.iter().find(|e| !(0..measured.len()).any(|i| is(i, e))) {
+        return Err(ShotError::NoPatch { name: unknown.clone() });
+    }
+    let patch = |(i, m): (usize, &Measurement)| MeasuredPatch {
+        name: name(i).to_owned(),
+        rgb: m.mean,
+        uncertainty: m.uncertainty(),
+        clipped: m.clipped,
+        reference: chart.colours[i].clone(),
+        excluded: exclude.iter().any(|e| is(i, e)).then(|| "left out by hand".to_owned()),
+    };
+    Ok(measured.iter().enumerate().map(patch).collect())
+}
+
+/// Distance between the middles of neighbours in a row, the mean over the chart.
+pub(crate) fn pitch_in_pixels(patches: &[Quad], columns: usize) -> f64 {
+    let middle = |quad: &Quad| [0, 1].map(|k| quad.iter().map(|p| p[k]).sum::<f64>() / 4.0);
+    let pairs = (0..patches.len().saturating_sub(1)).filter(|i| (i + 1) % columns.max(1) != 0);
+    let lengths: Vec<f64> = pairs
+        .map(|i| {
+            let ([ax, ay], [bx, by]) = (middle(&patches[i]), middle(&patches[i + 1]));
+            (bx - ax).hypot(by - ay)
+        })
+        .collect();
+    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
+}
+
 fn xyz(to_xyz: &Matrix3, rgb: [f64; 3]) -> Xyz {
     Xyz::from(to_xyz * Vector3::from(rgb))
 }
@@ -175,6 +203,8 @@ pub(crate) struct Opened {
     has_tables: bool,
     bits: u16,
     date: Option<String>,
+    /// Pixels an inch that it states.
+    resolution: Option<f64>,
     /// The light that its colours are those of.
     says: Option<LightSource>,
 }
@@ -184,6 +214,7 @@ impl Opened {
         let of_profile = |fault| Error::chart(path, ChartError::SourceProfile(fault));
         let bytes = files::read(path)?;
         let date = darkroot_encode::exif::date_of(&bytes).and_then(|text| crate::naming::date(&text));
+        let resolution = darkroot_encode::exif::resolution_of(&bytes);
         let encoded = rendered::encoded(path, &bytes)?;
         drop(bytes);
         let profile = match &encoded.icc {
@@ -200,6 +231,7 @@ impl Opened {
             has_tables: profile.has_tables(),
             bits: encoded.bits,
             date,
+            resolution,
             says: encoded.xmp.as_deref().and_then(provenance::light_in),
         })
     }

@@ -7,12 +7,10 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
-use darkroot_colour::temperature::Temperature;
 use darkroot_develop::{Bits, Cancel, Cancelled, Look, OutputSpace, Plan, Recipe, Scale};
 use darkroot_encode::{Format, Outline};
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 use darkroot_photo::{Capture, Picture};
-use darkroot_profile::Profile;
 
 use crate::files::{self, Failed, Output};
 use crate::from_chart::Told;
@@ -23,7 +21,7 @@ use crate::{Error, Job, from_chart, provenance};
 
 use metadata::metadata_for;
 pub use report::Report;
-use report::{blank_report, colours};
+use report::{blank_report, colours, far_light};
 
 /// How far a file has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,15 +102,7 @@ pub fn develop_into(
     control.step(Step::Decode);
     let format = format_of(output, settings);
     let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
-    let told = from_chart::of_file(settings)?;
-    let bytes = read()?;
-    let photo = open(input, &bytes, settings, store)?;
-    let told = match settings.chart.shot {
-        ChartShot::Itself => Some(from_chart::of_photo(input, &photo, &settings.chart)?),
-        _ => told,
-    };
-    let hash = if recipe.look == Look::Reproduction { files::sha256(&bytes) } else { String::new() };
-    drop(bytes);
+    let Decoded { photo, told, hash } = decoded(input, read, settings, store, &recipe)?;
 
     control.step(Step::Develop);
     let mut notes = photo.capture().notes.clone();
@@ -122,18 +112,19 @@ pub fn develop_into(
         Engine::Darkroot => {
             let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
             let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, recipe, told.as_ref())?;
-            let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), settings.dpi);
+            let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
+            let dpi = settings.dpi.or(by_chart);
+            let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), dpi);
             if recipe.look == Look::Reproduction {
+                let (profile, chart) = (chosen.as_ref(), told.as_ref());
                 let raw = (from_chart::file_name(input), hash);
-                let known = provenance::Known {
-                    raw,
-                    settings,
-                    profile: chosen.as_ref(),
-                    chart: told.as_ref(),
-                    plan: &plan,
-                };
-                let packet = provenance::packet(&known).into_bytes();
-                metadata.set(Directory::Image, tag::XMP, Value::Bytes(packet));
+                let known = provenance::Known { raw, settings, profile, chart, plan: &plan };
+                metadata.set(
+                    Directory::Image,
+                    tag::XMP,
+                    Value::Bytes(provenance::packet(&known).into_bytes()),
+                );
+                notes.extend(report::without_provenance(format));
             }
             drop(chosen);
             drop(photo);
@@ -178,6 +169,31 @@ pub fn develop_into(
         seconds: start.elapsed().as_secs_f64(),
         ..report
     })
+}
+
+/// A photograph, what a shot of a chart tells of it, and the hash of its file where a reproduction states it.
+struct Decoded {
+    photo: Photo,
+    told: Option<Told>,
+    hash: String,
+}
+
+fn decoded(
+    input: &Path,
+    read: impl FnOnce() -> Result<Vec<u8>, Error>,
+    settings: &Settings,
+    store: &ProfileStore,
+    recipe: &Recipe,
+) -> Result<Decoded, Error> {
+    let told = from_chart::of_file(settings)?;
+    let bytes = read()?;
+    let photo = open(input, &bytes, settings, store)?;
+    let told = match settings.chart.shot {
+        ChartShot::Itself => Some(from_chart::of_photo(input, &photo, &settings.chart)?),
+        _ => told,
+    };
+    let hash = if recipe.look == Look::Reproduction { files::sha256(&bytes) } else { String::new() };
+    Ok(Decoded { photo, told, hash })
 }
 
 /// The samples of a raw file, or its embedded JPEG where that is asked for.
@@ -316,19 +332,6 @@ fn plan(
         ..blank_report(input, capture, plan.size(), &plan.picture_space(), recipe.output.bits)
     };
     Ok((plan, report))
-}
-
-/// What a person is told of a profile that was made for other lights.
-fn far_light(profile: &Profile, white: Temperature) -> Option<String> {
-    let far = profile.far_from(white)?;
-    Some(format!(
-        "the profile is for {} ({:.0} K) and the light of this photograph has {:.0} K: colours can be off by dE2000 {:.1} more \
-         than in that light; a shot of the chart in this light makes a profile for both",
-        far.nearest.name,
-        far.nearest.kelvin(),
-        white.kelvin,
-        far.more
-    ))
 }
 
 #[cfg(feature = "imagepipe")]

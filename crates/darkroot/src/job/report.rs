@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use darkroot_colour::temperature::Temperature;
 use darkroot_develop::{Bits, Colours, Plan};
+use darkroot_encode::Format;
 use darkroot_photo::{Capture, PictureSpace, Size};
+use darkroot_profile::Profile;
 
 use crate::ChosenProfile;
 use serde::Serialize;
@@ -88,6 +91,25 @@ pub(super) fn clipped(plan: &Plan) -> Option<String> {
         share(cut.below),
         plan.picture_space().name()
     ))
+}
+
+/// What a person is told of a profile that was made for other lights.
+pub(super) fn far_light(profile: &Profile, white: Temperature) -> Option<String> {
+    let far = profile.far_from(white)?;
+    Some(format!(
+        "the profile is for {} ({:.0} K) and the light of this photograph has {:.0} K: colours can be off by dE2000 {:.1} more \
+         than in that light; a shot of the chart in this light makes a profile for both",
+        far.nearest.name,
+        far.nearest.kelvin(),
+        white.kelvin,
+        far.more
+    ))
+}
+
+/// What is said where a reproduction's file does not tell how it came about.
+pub(super) fn without_provenance(format: Format) -> Option<String> {
+    let has = matches!(format, Format::Tiff | Format::Jpeg | Format::Png);
+    (!has).then(|| format!("{format} gets no provenance: TIFF, JPEG and PNG have it in XMP"))
 }
 
 /// What can be said of every picture.

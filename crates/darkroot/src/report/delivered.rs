@@ -30,6 +30,19 @@ pub fn html(
             h1 { (name) }
             p { (about(judged)) }
         }
+        (section(judged, layout, asked, verdicts))
+    };
+    page(&format!("Delivery {name}"), STYLE, body)
+}
+
+/// Everything about one picture but its name.
+fn section(
+    judged: &JudgedPicture,
+    layout: &ChartLayout,
+    asked: Option<&str>,
+    verdicts: &[Verdict],
+) -> Markup {
+    html! {
         section {
             @if let Some(asked) = asked { (headline(asked, verdicts)) }
             (picture(judged))
@@ -48,8 +61,7 @@ pub fn html(
                 ul.notes { @for note in &judged.delivery.notes { li { (note) } } }
             }
         }
-    };
-    page(&format!("Delivery {name}"), STYLE, body)
+    }
 }
 
 /// The patches with what a page shows of them: their colour in the picture, and its error without lightness.
@@ -64,8 +76,17 @@ fn as_shown(patches: &[JudgedPatch]) -> Vec<JudgedPatch> {
     patches.iter().map(one).collect()
 }
 
-/// The page of several pictures: a row for each, and their drift in the order in which they come.
-pub fn table(judged: &[JudgedPicture], lines: &[LogLine], asked: Option<&str>) -> String {
+/// Most pictures that a page shows one by one.
+const SHOWN: usize = 60;
+
+/// The page of several pictures: a row for each, their drift in the order in which they come, and then each by itself.
+pub fn table(
+    judged: &[JudgedPicture],
+    layout: &ChartLayout,
+    lines: &[LogLine],
+    asked: Option<&str>,
+    verdicts: &[Vec<Verdict>],
+) -> String {
     let failed = lines.iter().filter(|line| line.outcome == Outcome::Failed).count();
     let number = |v: f64| format!("{v:.2}");
     let greys = |found: &JudgedPicture, of: fn(&Grey) -> f64| {
@@ -101,6 +122,11 @@ pub fn table(judged: &[JudgedPicture], lines: &[LogLine], asked: Option<&str>) -
             @for one in judged.iter().zip(lines) { (row(one)) }
         }
         (plots_of(lines))
+        @for (found, verdicts) in judged.iter().zip(verdicts).take(SHOWN) {
+            h2 { (from_chart::file_name(&found.path)) " " small { (about(found)) } }
+            (section(found, layout, asked, verdicts))
+        }
+        @if judged.len() > SHOWN { p.legend { "The first " (SHOWN) " pictures are shown." } }
     };
     page("Deliveries", &format!("{STYLE}{HISTORY_STYLE}"), body)
 }
@@ -186,6 +212,10 @@ fn details(judged: &JudgedPicture) -> Markup {
         rows.push(("SFR10, cycles a pixel, at most 0.5", format!("{:.3}", edges.sfr10)));
         rows.push(("largest response", format!("{:.2}", edges.peak)));
         rows.push(("red and blue beside green, pixels", format!("{:.2}", edges.misregistration)));
+    }
+    if let Some(scale) = details.scale {
+        rows.push(("pixels an inch, by the chart", format!("{:.1}", scale.found)));
+        rows.extend(scale.stated.map(|stated| ("pixels an inch, as stated", format!("{stated:.1}"))));
     }
     if let Some(grid) = details.distortion {
         rows.push(("distortion of the grid, % of the diagonal", format!("{:.2}", grid.percent)));

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use darkroot_develop::Resize;
+
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
 use super::text::{balance, one_of};
@@ -21,7 +23,7 @@ pub enum ChartShot {
 }
 
 /// What is taken from a shot of a chart.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FromChart {
     /// The shot; its white patch gives the exposure.
     pub shot: ChartShot,
@@ -29,6 +31,8 @@ pub struct FromChart {
     pub black: bool,
     /// Whether its greys give the white balance.
     pub balance: bool,
+    /// Millimetres between the middles of two of its patches, where they are to tell the resolution.
+    pub pitch: Option<f64>,
     /// The chart, by name or file; any with a built-in reference where it is not given.
     pub layout: Option<String>,
     /// Its reference, by name or file; the built-in one where it is not given.
@@ -51,14 +55,18 @@ impl FromChart {
 /// What of a chart cannot be had like that.
 pub(super) fn check(settings: &Settings, camera_output: bool) -> Result<(), SettingsError> {
     let chart = &settings.chart;
-    let of_chart = [("white-balance", chart.balance), ("black-from-chart", chart.black)];
+    let of_chart =
+        [("white-balance", chart.balance), ("black-from-chart", chart.black), ("dpi", chart.pitch.is_some())];
     if chart.shot == ChartShot::None {
         return match of_chart.iter().find(|(_, asked)| *asked) {
             Some((setting, _)) => Err(SettingsError::NoChartShot { setting }),
             None => Ok(()),
         };
     }
+    let geometry = &settings.recipe.geometry;
+    let is_scaled = geometry.resize != Resize::default() || geometry.perspective.is_some();
     let other = [
+        ("dpi", chart.pitch.is_some() && is_scaled),
         ("space", camera_output),
         ("auto-exposure", settings.recipe.exposure.auto),
         ("from-preview", settings.from_preview),

@@ -172,15 +172,26 @@ pub(super) const DPI: Setting = Setting {
     alias: None,
     noun: "resolution",
     kind: Kind::Text {
-        form: "auto (what the camera wrote) or a whole number from 1 to 10000",
+        form: "auto (what the camera wrote), a whole number from 1 to 10000, or chart:MM (by a chart whose patches are so \
+               far apart)",
         example: "\"300\"",
     },
     default: AUTO,
     group: Group::Output,
     placeholder: "N",
-    help: "Pixels an inch on paper that the file states, 1 to 10000; auto is what the camera wrote",
+    help: "Pixels an inch that the file states: 1 to 10000; auto is what the camera wrote; chart:MM what the chart of \
+           `--exposure-from-chart` shows, whose patches are MM apart from middle to middle",
     changes: Changes::Encoding,
-    set: |to, text| put(&mut to.dpi, dpi(text)),
+    set: |to, text| {
+        to.chart.pitch = None;
+        let Some(pitch) = text.strip_prefix("chart:") else { return put(&mut to.dpi, dpi(text)) };
+        to.dpi = None;
+        let pitch = number(pitch.strip_suffix("mm").unwrap_or(pitch).trim());
+        let pitch = pitch.ok().filter(|pitch| (0.1..=1000.0).contains(pitch));
+        to.chart.pitch =
+            Some(pitch.ok_or_else(|| NotAValue::plain(text, "resolution", "a distance in millimetres"))?);
+        Ok(())
+    },
 };
 
 /// Pixels an inch.
