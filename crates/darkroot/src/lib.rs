@@ -90,6 +90,8 @@ pub use chart_camera::chart_camera;
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};
 
+pub mod metadata;
+
 mod lens;
 mod shown;
 pub use shown::{json_lines, lines, quoted, shown};

@@ -1,4 +1,4 @@
-//! How a reproduction came about, as a packet of XMP: profile, chart, light, settings.
+//! How a reproduction came about, as fields of XMP: profile, chart, light, settings.
 
 use darkroot_colour::temperature::Temperature;
 use darkroot_develop::Plan;
@@ -7,11 +7,10 @@ use roxmltree::{Document, ParsingOptions};
 
 use crate::from_chart::{Told, file_name};
 use crate::light::LightSource;
+use crate::metadata::DARKROOT as NAMESPACE;
 use crate::settings::{Key, Settings};
-use crate::{ChosenProfile, VERSION, files};
+use crate::{ChosenProfile, files};
 
-/// Name space of the fields (it is a name, not an address).
-const NAMESPACE: &str = "urn:darkroot:provenance:1#";
 /// Mireds from the white of a photograph up to which a profile's light is that of the photograph.
 const NEAR: f64 = 50.0;
 
@@ -25,9 +24,9 @@ pub(crate) struct Known<'a> {
     pub(crate) plan: &'a Plan,
 }
 
-/// The packet (ISO 16684-1): names of files without their folders, hashes, the light, and every setting that is not its
-/// default.
-pub(crate) fn packet(known: &Known<'_>) -> String {
+/// Names and values of the fields: names of files without their folders, hashes, the light, and every setting that is not its
+/// default. What is not known is empty.
+pub(crate) fn fields(known: &Known<'_>) -> Vec<(&'static str, String)> {
     let mut fields = vec![("RawFile", known.raw.0.clone()), ("RawSha256", known.raw.1.clone())];
     if let Some(chosen) = known.profile {
         fields.push(("Profile", chosen.profile.camera().name()));
@@ -48,17 +47,7 @@ pub(crate) fn packet(known: &Known<'_>) -> String {
     }
     fields.push(("Exposure", format!("{:.5}", known.plan.gain)));
     fields.push(("Settings", settings_in_words(known.settings)));
-    let lines = fields.iter().filter(|(_, value)| !value.is_empty());
-    let lines: String =
-        lines.map(|(name, value)| format!("\n   darkroot:{name}=\"{}\"", escaped(value))).collect();
-    format!(
-        "<?xpacket begin=\"\u{feff}\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n\
-         <x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n \
-         <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n  \
-         <rdf:Description rdf:about=\"\" xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" \
-         xmlns:darkroot=\"{NAMESPACE}\"\n   xmp:CreatorTool=\"Darkroot {VERSION}\"{lines}/>\n \
-         </rdf:RDF>\n</x:xmpmeta>\n<?xpacket end=\"w\"?>"
-    )
+    fields
 }
 
 /// SHA-256 of the profile's file, or of the profile as a file where it is built in.
@@ -104,21 +93,6 @@ fn settings_in_words(settings: &Settings) -> String {
     settings.told.iter().map(one).collect::<Vec<_>>().join("; ")
 }
 
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 /// The light that a packet of XMP says a reproduction is for; `None` where it says none.
 pub(crate) fn light_in(packet: &[u8]) -> Option<LightSource> {
     /// No packet has more elements.
@@ -152,10 +126,5 @@ mod tests {
         assert_eq!(kelvin("<a d:Light=\"moonshine\"/>"), None);
         assert_eq!(light_in(b"\xff\xfe no text"), None);
         assert_eq!(light_in(b"<a><b></a>"), None);
-    }
-
-    #[test]
-    fn a_name_cannot_break_the_packet() {
-        assert_eq!(escaped("a\"<&>\u{1}.nef"), "a&quot;&lt;&amp;&gt; .nef");
     }
 }

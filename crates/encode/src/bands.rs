@@ -71,7 +71,7 @@ fn write_made<T: Sample>(
     format.accepts(&outline.space)?;
     options.check()?;
     format.sides(outline.size, T::BITS)?;
-    let metadata = exif::of_picture(metadata, outline.size, &outline.space);
+    let metadata = exif::of_picture(metadata, outline.size, &outline.space, format);
     output::buffered(out, |out| match format {
         Format::Jpeg => jpeg::write(outline, options, &metadata, out, make),
         Format::Png => png::write(outline, &metadata, out, make),

@@ -8,6 +8,8 @@ use darkroot_photo::{Metadata, PictureSpace, Size};
 use exif::experimental::Writer;
 use exif::{Context, In, Rational, SRational, Tag};
 
+use crate::Format;
+
 /// The fields as a block in the structure of TIFF, little endian, without the "Exif\0\0" that some files put
 /// before it. It is empty when there are no fields.
 ///
@@ -15,7 +17,7 @@ use exif::{Context, In, Rational, SRational, Tag};
 /// file stores its pixels, and fields without a value, are left out. Text keeps its UTF-8 bytes.
 pub fn block(metadata: &Metadata) -> Vec<u8> {
     let fields: Vec<exif::Field> = fields(metadata)
-        .filter(|field| !is_xmp(field))
+        .filter(|field| !has_own_place(field))
         .map(|field| exif::Field {
             tag: Tag(context(field.directory), field.tag),
             ifd_num: In::PRIMARY,
@@ -72,15 +74,24 @@ pub fn resolution_of(file: &[u8]) -> Option<f64> {
 
 /// The packet of XMP, where there is one. TIFF has a field for it; other formats have a place outside of Exif.
 pub(crate) fn xmp(metadata: &Metadata) -> &[u8] {
-    let packet = metadata.fields().iter().find(|field| is_xmp(field)).map(|field| &field.value);
-    match packet {
+    bytes(metadata, tag::XMP)
+}
+
+/// The block of IPTC-IIM, where there is one: in TIFF a field, in JPEG a place outside of Exif.
+pub(crate) fn iptc(metadata: &Metadata) -> &[u8] {
+    bytes(metadata, tag::IPTC)
+}
+
+fn bytes(metadata: &Metadata, tag: u16) -> &[u8] {
+    match metadata.get(Directory::Image, tag) {
         Some(Value::Bytes(bytes) | Value::Undefined(bytes)) => bytes,
         _ => &[],
     }
 }
 
-fn is_xmp(field: &Field) -> bool {
-    field.directory == Directory::Image && field.tag == tag::XMP
+/// Whether a field is none of the Exif block but stands beside it.
+fn has_own_place(field: &Field) -> bool {
+    field.directory == Directory::Image && [tag::XMP, tag::IPTC].contains(&field.tag)
 }
 
 /// The fields that are written for a picture, in the order of their tags, but for the orientation.
@@ -89,8 +100,8 @@ pub(crate) fn fields(metadata: &Metadata) -> impl Iterator<Item = &Field> {
 }
 
 /// The fields of the shot together with what the fields of the file must say of this picture: its size and
-/// whether it is in sRGB. No fields stay no fields.
-pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace) -> Metadata {
+/// whether it is in sRGB, and what a JPEG must say. No fields stay no fields.
+pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, format: Format) -> Metadata {
     let mut metadata = metadata.clone();
     if fields(&metadata).next().is_none() {
         return Metadata::default();
@@ -106,12 +117,38 @@ pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace) 
     if metadata.get(Directory::Exif, EXIF_VERSION).is_none() {
         metadata.set(Directory::Exif, EXIF_VERSION, Value::Undefined(b"0232".to_vec()));
     }
+    if format == Format::Jpeg {
+        required_of_jpeg(&mut metadata);
+    }
     metadata
+}
+
+/// What every Exif of a JPEG states (Exif 2.32, table 20): 72 pixels an inch where nobody says another number, samples of
+/// colour in the middle, the order of components.
+fn required_of_jpeg(metadata: &mut Metadata) {
+    const INCH: u16 = 2;
+    const CENTRED: u16 = 1;
+    let required = [
+        (Directory::Image, tag::RESOLUTION[0], Value::Rationals(vec![(72, 1)])),
+        (Directory::Image, tag::RESOLUTION[1], Value::Rationals(vec![(72, 1)])),
+        (Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH])),
+        (Directory::Image, YCBCR_POSITIONING, Value::Shorts(vec![CENTRED])),
+        (Directory::Exif, COMPONENTS, Value::Undefined(vec![1, 2, 3, 0])),
+        (Directory::Exif, FLASHPIX_VERSION, Value::Undefined(b"0100".to_vec())),
+    ];
+    for (directory, tag, value) in required {
+        if metadata.get(directory, tag).is_none() {
+            metadata.set(directory, tag, value);
+        }
+    }
 }
 
 /// ColorSpace of a picture that its ICC profile describes.
 const UNCALIBRATED: u16 = 0xffff;
 const EXIF_VERSION: u16 = 0x9000;
+const COMPONENTS: u16 = 0x9101;
+const FLASHPIX_VERSION: u16 = 0xa000;
+const YCBCR_POSITIONING: u16 = 0x0213;
 const PIXEL_X_DIMENSION: u16 = 0xa002;
 const PIXEL_Y_DIMENSION: u16 = 0xa003;
 /// Exif: what the maker wants to remember, in a form of its own.
@@ -133,7 +170,7 @@ fn is_about_storage(field: &Field) -> bool {
                 | 0x013d // predictor
                 | 0x012d | 0x013e..=0x013f // transfer function, white, primaries
                 | 0x0140..=0x015b // palette, tiles, subfiles, inks, sample format, JPEG tables
-                | 0x0200..=0x0214 // thumbnail, YCbCr
+                | 0x0200..=0x0212 | 0x0214 // thumbnail, YCbCr
                 | 0x828d..=0x828e // colour filter array
                 | 0x8769 // Exif directory
                 | 0x8773 // ICC profile
@@ -214,7 +251,8 @@ mod tests {
     fn a_packet_of_xmp_stands_outside_of_the_block() {
         let mut fields = metadata();
         fields.set(Directory::Image, tag::XMP, Value::Bytes(b"<x/>".to_vec()));
-        assert_eq!(xmp(&fields), b"<x/>");
+        fields.set(Directory::Image, tag::IPTC, Value::Undefined(vec![0x1c]));
+        assert_eq!((xmp(&fields), iptc(&fields)), (b"<x/>".as_slice(), [0x1c].as_slice()));
         assert_eq!(block(&fields), block(&metadata()));
     }
 
@@ -232,7 +270,10 @@ mod tests {
         turned.set(Directory::Image, tag::ORIENTATION, Value::Shorts(vec![6]));
         turned.set(Directory::Image, tag::ARTIST, Value::Text(String::new()));
         assert!(block(&turned).is_empty());
-        assert!(block(&of_picture(&turned, Size { width: 1, height: 1 }, &PictureSpace::Camera)).is_empty());
+        assert!(
+            block(&of_picture(&turned, Size { width: 1, height: 1 }, &PictureSpace::Camera, Format::Jpeg))
+                .is_empty()
+        );
     }
 
     #[test]
@@ -249,10 +290,11 @@ mod tests {
     fn the_fields_tell_the_size_and_whether_it_is_srgb() {
         for (space, wanted) in [(RgbSpace::SRGB, 1), (RgbSpace::ADOBE_RGB, 0xffff)] {
             let size = Size { width: 5, height: 3 };
-            let exif = read(block(&of_picture(&metadata(), size, &PictureSpace::Rgb(space))));
+            let exif = read(block(&of_picture(&metadata(), size, &PictureSpace::Rgb(space), Format::Jpeg)));
             assert_eq!(number(&exif, Tag::ColorSpace), Some(wanted));
             assert_eq!(number(&exif, Tag::PixelXDimension), Some(5));
             assert_eq!(number(&exif, Tag::PixelYDimension), Some(3));
+            assert_eq!(number(&exif, Tag::YCbCrPositioning), Some(1));
         }
     }
 }

@@ -20,7 +20,8 @@ use crate::{Error, Format, exif};
 
 pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut Buffered<'_, '_>) -> Result<(), Error> {
     let codestream = codestream(frame)?;
-    write_container(&codestream, frame.samples.bits(), &exif::block(metadata), out).map_err(Error::Io)
+    write_container(&codestream, frame.samples.bits(), [&exif::block(metadata), exif::xmp(metadata)], out)
+        .map_err(Error::Io)
 }
 
 /// What the library was made to do, and what it should not have done.
@@ -283,8 +284,13 @@ impl Bits {
     }
 }
 
-/// Boxes around the codestream (ISO/IEC 18181-2): signature, file type, level, Exif, codestream.
-fn write_container(codestream: &[u8], bits: u8, exif: &[u8], out: &mut impl Write) -> std::io::Result<()> {
+/// Boxes around the codestream (ISO/IEC 18181-2): signature, file type, level, Exif, XMP, codestream.
+fn write_container(
+    codestream: &[u8],
+    bits: u8,
+    [exif, xmp]: [&[u8]; 2],
+    out: &mut impl Write,
+) -> std::io::Result<()> {
     out.write_all(b"\0\0\0\x0cJXL \r\n\x87\n")?;
     out.write_all(b"\0\0\0\x14ftypjxl \0\0\0\0jxl ")?;
     if bits > 8 {
@@ -293,6 +299,9 @@ fn write_container(codestream: &[u8], bits: u8, exif: &[u8], out: &mut impl Writ
     }
     if !exif.is_empty() {
         write_box(b"Exif", &[b"\0\0\0\0", exif], out)?; // The block follows at once.
+    }
+    if !xmp.is_empty() {
+        write_box(b"xml ", &[xmp], out)?;
     }
     write_box(b"jxlc", &[codestream], out)
 }

@@ -57,6 +57,7 @@ pub use output::Out;
 
 pub mod exif;
 pub mod icc;
+pub mod iptc;
 
 pub mod tiff_field;
 
@@ -95,7 +96,7 @@ pub fn write(
     format.accepts(&picture.space)?;
     options.check()?;
     let frame = format::Frame::of(picture, format)?;
-    let about = exif::of_picture(metadata, picture.size, &picture.space);
+    let about = exif::of_picture(metadata, picture.size, &picture.space, format);
     match format {
         Format::Jpeg | Format::Png | Format::Tiff => {
             InBands { picture, format, options, metadata, out }.with_all(&picture.samples)
@@ -183,7 +184,7 @@ mod tests {
                 let file = file.into_inner();
                 let block = {
                     let picture = picture_for(format, 40, 30);
-                    let metadata = crate::exif::of_picture(&metadata(), picture.size, &picture.space);
+                    let metadata = crate::exif::of_picture(&metadata(), picture.size, &picture.space, format);
                     crate::exif::block(&metadata)
                 };
                 (None, file.windows(block.len()).find(|w| *w == block).map(<[u8]>::to_vec))

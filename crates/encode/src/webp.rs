@@ -1,8 +1,7 @@
-//! WebP: lossless, with the profile in ICCP and Exif in EXIF. The lossy kind would need a library in C.
+//! WebP: lossless, with the profile in ICCP, Exif in EXIF and XMP in "XMP ". The lossy kind would need a library in C.
 
 use darkroot_photo::Metadata;
-use image::codecs::webp::WebPEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image_webp::{ColorType, WebPEncoder};
 
 use crate::format::Frame;
 use crate::output::Buffered;
@@ -10,12 +9,11 @@ use crate::{Error, Format, exif};
 
 pub(crate) fn write(frame: &Frame<'_>, metadata: &Metadata, out: &mut Buffered<'_, '_>) -> Result<(), Error> {
     let failed = Error::encoder(Format::Webp);
-    let mut encoder = WebPEncoder::new_lossless(out);
-    encoder.set_icc_profile(frame.profile()).map_err(|e| failed(e.into()))?;
-    encoder.set_exif_metadata(exif::block(metadata)).map_err(|e| failed(e.into()))?;
-    encoder
-        .write_image(frame.bytes(), frame.width, frame.height, ExtendedColorType::Rgb8)
-        .map_err(|e| failed(e.into()))
+    let mut encoder = WebPEncoder::new(out);
+    encoder.set_icc_profile(frame.profile());
+    encoder.set_exif_metadata(exif::block(metadata));
+    encoder.set_xmp_metadata(exif::xmp(metadata).to_vec());
+    encoder.encode(frame.bytes(), frame.width, frame.height, ColorType::Rgb8).map_err(|e| failed(e.into()))
 }
 
 #[cfg(test)]

@@ -62,6 +62,11 @@ impl Metadata {
         }
     }
 
+    /// Keeps the fields that `wanted` says.
+    pub fn retain(&mut self, wanted: impl FnMut(&Field) -> bool) {
+        self.fields.retain(wanted);
+    }
+
     /// Value of a field.
     pub fn get(&self, directory: Directory, tag: u16) -> Option<&Value> {
         let found = self.fields.binary_search_by_key(&(directory, tag), |f| (f.directory, f.tag));
@@ -106,6 +111,12 @@ pub mod tag {
     pub const SOFTWARE: u16 = 0x0131;
     /// A packet of XMP, as bytes (XMP specification, part 3, 3.2.3.2: TIFF).
     pub const XMP: u16 = 0x02bc;
+    /// Image: what is seen, in words.
+    pub const IMAGE_DESCRIPTION: u16 = 0x010e;
+    /// Image: stars, 0 to 5, and the same in percent.
+    pub const RATING: [u16; 2] = [0x4746, 0x4749];
+    /// A block of IPTC-IIM, as bytes.
+    pub const IPTC: u16 = 0x83bb;
     /// Image: date and time of the last change.
     pub const DATE_TIME: u16 = 0x0132;
     /// Image: photographer.
@@ -126,6 +137,12 @@ pub mod tag {
     pub const SUBJECT_DISTANCE: u16 = 0x9206;
     /// Exif: focal length, mm.
     pub const FOCAL_LENGTH: u16 = 0x920a;
+    /// Exif: serial number of the camera, and of the lens.
+    pub const SERIAL_NUMBERS: [u16; 2] = [0xa431, 0xa435];
+    /// Exif: owner of the camera.
+    pub const OWNER: u16 = 0xa430;
+    /// Exif: number of this photograph, as hexadecimal digits.
+    pub const UNIQUE_ID: u16 = 0xa420;
     /// Exif: lens specification.
     pub const LENS_SPECIFICATION: u16 = 0xa432;
     /// Exif: lens maker.

@@ -7,7 +7,18 @@ use crate::screen::Container;
 use crate::tiff::{Directories, EXIF_IFD, Entry, GPS_IFD};
 
 /// Fields of the primary directory that still hold for the developed picture.
-const IMAGE_TAGS: [u16; 6] = [0x010e, tag::MAKE, tag::MODEL, tag::DATE_TIME, tag::ARTIST, tag::COPYRIGHT];
+const IMAGE_TAGS: [u16; 8] = [
+    tag::IMAGE_DESCRIPTION,
+    tag::MAKE,
+    tag::MODEL,
+    tag::DATE_TIME,
+    tag::ARTIST,
+    tag::COPYRIGHT,
+    tag::RATING[0],
+    tag::RATING[1],
+];
+/// What people wrote, in blocks of their own.
+const BLOCKS: [u16; 2] = [tag::XMP, tag::IPTC];
 
 /// Fields of the Exif directory that still hold for the developed picture: exposure, dates, lens, conditions.
 /// Those that describe the stored pixels or the camera's own rendering are left out.
@@ -28,6 +39,9 @@ const MAX_TEXT: usize = 4096;
 const MAX_VALUES: usize = 1024;
 /// Bytes of the largest field that is carried over: the longest list of fractions.
 const MAX_LENGTH: usize = 8 * MAX_VALUES;
+
+/// Bytes of the largest packet of XMP that is carried over, and of the largest block of IPTC.
+const MAX_BLOCK: usize = 1 << 20;
 
 /// Reads the standard fields of the file itself, or of its embedded JPEG where the container is not TIFF.
 ///
@@ -70,6 +84,13 @@ fn fields(tiff: &Directories<'_>) -> Metadata {
     }
     if let Some(gps) = tiff.below(image, GPS_IFD) {
         take(&gps.entries, Directory::Gps, &|tag| tag <= LAST_GPS_TAG);
+    }
+    for entry in image.entries.iter().filter(|entry| BLOCKS.contains(&entry.tag)) {
+        // Types are bytes of any kind; IPTC is at times stored as whole numbers of 32 bits.
+        let block = tiff.value(entry, MAX_BLOCK).filter(|block| !block.is_empty());
+        if let Some(block) = block.filter(|_| matches!(entry.kind, 1 | 2 | 4 | 7)) {
+            metadata.set(Directory::Image, entry.tag, Value::Bytes(block.to_vec()));
+        }
     }
     metadata
 }

@@ -133,3 +133,79 @@ fn the_size_on_paper_is_stated_as_asked() {
     }
     desk.fails(2, &["develop", "a.dng", "--dpi", "0"], &["--dpi", "1 to 10000"]);
 }
+
+/// As a program for sorting photographs writes it beside them.
+const SIDECAR: &str = r#"<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
+<rdf:Description rdf:about="" xmlns:xmp="http://ns.adobe.com/xap/1.0/" xmlns:dc="http://purl.org/dc/elements/1.1/"
+ xmlns:crs="http://ns.adobe.com/camera-raw-settings/1.0/" xmlns:exif="http://ns.adobe.com/exif/1.0/"
+ xmp:Rating="4" crs:Exposure2012="+1.5" exif:GPSLatitude="47,22.5N" exif:GPSLongitude="8,30W">
+<dc:subject><rdf:Bag><rdf:li>fog</rdf:li><rdf:li>lake</rdf:li></rdf:Bag></dc:subject>
+<dc:creator><rdf:Seq><rdf:li>Ann</rdf:li><rdf:li>Bob</rdf:li></rdf:Seq></dc:creator>
+</rdf:Description></rdf:RDF></x:xmpmeta>"#;
+
+fn holds(desk: &Desk, name: &str, text: &[u8]) -> bool {
+    desk.read(name).windows(text.len()).any(|at| at == text)
+}
+
+#[test]
+fn what_stands_in_a_sidecar_goes_into_every_format() {
+    let desk = Desk::with_dng();
+    desk.put("a.dng.xmp", SIDECAR);
+    for ending in CONTAINERS {
+        let name = format!("o.{ending}");
+        desk.develop(&["a.dng", "-o", &name]);
+        let exif = read(&desk, &name);
+        assert_eq!(text(&exif, Tag::Artist), "Ann; Bob", "{name}");
+        assert_eq!(text(&exif, Tag::GPSLongitudeRef), "W", "{name}");
+        for wanted in ["<rdf:li>lake</rdf:li>", "<xmp:Rating>4</xmp:Rating>"] {
+            assert!(holds(&desk, &name, wanted.as_bytes()), "{name}: {wanted}");
+        }
+        assert!(!holds(&desk, &name, b"Exposure2012"), "{name}");
+        // IPTC has a place in two of them: keywords are dataset 25 of record 2.
+        let keyword = b"\x1c\x02\x19\x00\x04lake";
+        assert_eq!(holds(&desk, &name, keyword), ["jpg", "tif"].contains(&ending), "{name}");
+    }
+    desk.develop(&["a.dng", "-o", "o.jxl"]);
+    assert!(holds(&desk, "o.jxl", b"<rdf:li>lake</rdf:li>"));
+}
+
+#[test]
+fn what_is_asked_for_counts_most_and_what_is_not_wanted_stays_out() {
+    let desk = Desk::with_dng();
+    desk.put("a.xmp", SIDECAR);
+    let tags = "xmp:Rating=; dc:title=Fog & lake; photoshop:City=Zürich";
+    desk.develop(&["a.dng", "-o", "asked.jpg", "--artist", "Cy", "--copyright", "(c) Cy", "--set-tag", tags]);
+    let exif = read(&desk, "asked.jpg");
+    assert_eq!((text(&exif, Tag::Artist), text(&exif, Tag::Copyright)), ("Cy".into(), "(c) Cy".into()));
+    assert!(
+        holds(&desk, "asked.jpg", b"Fog &amp; lake") && holds(&desk, "asked.jpg", b"\x1c\x02\x5a\x00\x07Z")
+    );
+    assert!(!holds(&desk, "asked.jpg", b"xmp:Rating") && holds(&desk, "asked.jpg", b"lake</rdf:li>"));
+    desk.develop(&["a.dng", "-o", "no-gps.jpg", "--metadata", "no-gps"]);
+    assert!(!holds(&desk, "no-gps.jpg", b"GPSLatitude") && holds(&desk, "no-gps.jpg", b"lake</rdf:li>"));
+    assert!(read(&desk, "no-gps.jpg").get_field(Tag::GPSLatitude, In::PRIMARY).is_none());
+    desk.develop(&["a.dng", "-o", "basic.jpg", "--metadata", "basic"]);
+    assert!(!holds(&desk, "basic.jpg", b"lake") && holds(&desk, "basic.jpg", b"Simulated One"));
+    desk.develop(&["a.dng", "-o", "none.jpg", "--metadata", "none"]);
+    assert!(!holds(&desk, "none.jpg", b"Exif\0") && !holds(&desk, "none.jpg", b"xmpmeta"));
+}
+
+#[test]
+fn a_sidecar_that_cannot_be_read_is_told_and_can_be_left_out() {
+    let desk = Desk::with_dng();
+    desk.put("a.dng.xmp", "<x:xmpmeta");
+    desk.fails(2, &["develop", "a.dng"], &["a.dng.xmp", "no XMP", "metadata"]);
+    desk.develop(&["a.dng", "--metadata", "basic"]);
+    desk.fails(2, &["develop", "a.dng", "--set-tag", "Rating=4"], &["set-tag", "xmp:Rating=4"]);
+}
+
+#[test]
+fn a_batch_takes_sidecars_and_develops_anew_when_they_change() {
+    let desk = Desk::with_dng();
+    desk.put("a.xmp", SIDECAR);
+    assert_eq!(desk.run(&["batch", "a.dng", "-o", "out", "-q"]).code, 0);
+    assert!(holds(&desk, "out/a.jpg", b"lake</rdf:li>"));
+    desk.put("a.xmp", SIDECAR.replace("lake", "pond"));
+    assert_eq!(desk.run(&["batch", "a.dng", "-o", "out", "-q"]).code, 0);
+    assert!(holds(&desk, "out/a.jpg", b"pond</rdf:li>"));
+}

@@ -1,6 +1,5 @@
 //! Developing one file.
 
-mod metadata;
 mod report;
 
 use std::io;
@@ -9,17 +8,16 @@ use std::time::Instant;
 
 use darkroot_develop::{Bits, Cancel, Cancelled, Look, OutputSpace, Plan, Recipe, Scale};
 use darkroot_encode::{Format, Outline};
-use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
-use darkroot_photo::{Capture, Picture};
+use darkroot_photo::{Capture, Metadata, Picture};
 
 use crate::files::{self, Failed, Output};
 use crate::from_chart::Told;
+use crate::metadata::{About, of_picture};
 use crate::photo::Photo;
 use crate::settings::{ChartShot, Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
 use crate::{Error, Job, from_chart, provenance};
 
-use metadata::metadata_for;
 pub use report::Report;
 use report::{blank_report, colours, far_light};
 
@@ -114,18 +112,15 @@ pub fn develop_into(
             let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, recipe, told.as_ref())?;
             let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
             let dpi = settings.dpi.or(by_chart);
-            let mut metadata = metadata_for(photo.capture(), &plan.picture_space(), dpi);
+            let mut origin = Vec::new();
             if recipe.look == Look::Reproduction {
                 let (profile, chart) = (chosen.as_ref(), told.as_ref());
                 let raw = (from_chart::file_name(input), hash);
-                let known = provenance::Known { raw, settings, profile, chart, plan: &plan };
-                metadata.set(
-                    Directory::Image,
-                    tag::XMP,
-                    Value::Bytes(provenance::packet(&known).into_bytes()),
-                );
+                origin =
+                    provenance::fields(&provenance::Known { raw, settings, profile, chart, plan: &plan });
                 notes.extend(report::without_provenance(format));
             }
+            let metadata = of_picture(photo.capture(), &plan.picture_space(), dpi, &settings.about, &origin);
             drop(chosen);
             drop(photo);
             if format.takes_bands() && control.seen.is_none() {
@@ -147,7 +142,8 @@ pub fn develop_into(
         }
         Engine::Imagepipe => {
             let (picture, report) = second_engine(input, photo.capture(), &recipe)?;
-            (report, metadata_for(photo.capture(), &picture.space, settings.dpi), Some((picture, to)))
+            let metadata = of_picture(photo.capture(), &picture.space, settings.dpi, &settings.about, &[]);
+            (report, metadata, Some((picture, to)))
         }
     };
     control.step(Step::Write);
@@ -272,7 +268,7 @@ pub fn encode_picture(
     capture: &Capture,
 ) -> Result<Vec<u8>, darkroot_encode::Error> {
     let mut out = io::Cursor::new(Vec::new());
-    let metadata = metadata_for(capture, &picture.space, None);
+    let metadata = of_picture(capture, &picture.space, None, &About::default(), &[]);
     darkroot_encode::write(picture, format, &darkroot_encode::Options::default(), &metadata, &mut out)?;
     Ok(out.into_inner())
 }

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
 
 use darkroot_encode::Format;
 
 use super::{Layer, Origin, RecipeError};
+use crate::metadata::{self, Sidecar, Xmp};
 use crate::naming::{NamingError, Target};
 use crate::settings::{Key, Settings};
 
@@ -14,13 +16,18 @@ use crate::settings::{Key, Settings};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Effective {
     values: BTreeMap<Key, (String, Origin)>,
+    /// What the photograph's sidecar of XMP says.
+    said: Option<Sidecar>,
 }
+
+/// What the sidecar says goes by this name among [`texts`](Effective::texts).
+const SAID: &str = "sidecar";
 
 impl Default for Effective {
     /// The defaults.
     fn default() -> Self {
         let value = |key: Key| (key, (key.default_text().to_owned(), Origin::Default));
-        Self { values: Key::all().map(value).collect() }
+        Self { values: Key::all().map(value).collect(), said: None }
     }
 }
 
@@ -30,6 +37,14 @@ impl Effective {
         for (key, text) in layer.iter() {
             self.values.insert(key, (text.to_owned(), layer.origin.clone()));
         }
+    }
+
+    /// Takes what stands in the sidecar of XMP beside a photograph, if that goes into its picture.
+    pub(super) fn read_sidecar(&mut self, input: &Path) -> Result<(), RecipeError> {
+        if matches!(self.get(Key::METADATA).0, "all" | "no-gps") {
+            self.said = metadata::beside(input).map_err(|message| RecipeError::Sidecar { message })?;
+        }
+        Ok(())
     }
 
     /// The text of a key and where it is from.
@@ -50,6 +65,10 @@ impl Effective {
             if text != key.default_text() {
                 settings.told.push((key.name(), text.clone()));
             }
+        }
+        if let Some(Sidecar { packet }) = &self.said {
+            let said = Xmp::parse(packet).map_err(|message| RecipeError::Sidecar { message })?;
+            settings.about.sidecar = Some(Arc::new(said));
         }
         Ok(settings)
     }
@@ -98,7 +117,8 @@ impl Effective {
 
     /// Name and text of every key: all that another process must know to make the same picture.
     pub fn texts(&self) -> BTreeMap<String, String> {
-        self.values.iter().map(|(key, (text, _))| (key.name().to_owned(), text.clone())).collect()
+        let said = self.said.iter().map(|said| (SAID.to_owned(), said.packet.clone()));
+        self.values.iter().map(|(key, (text, _))| (key.name().to_owned(), text.clone())).chain(said).collect()
     }
 
     /// What [`texts`](Self::texts) gave; keys that are missing have their defaults. Where the values were from
@@ -111,8 +131,10 @@ impl Effective {
             let key = Key::from_name(name).ok_or_else(|| RecipeError::Name { name: name.clone() })?;
             Ok((key, text.clone()))
         };
-        let values: Vec<(Key, String)> = texts.iter().map(named).collect::<Result<_, RecipeError>>()?;
-        let mut effective = Self::default();
+        let values: Vec<(Key, String)> =
+            texts.iter().filter(|(name, _)| *name != SAID).map(named).collect::<Result<_, RecipeError>>()?;
+        let said = texts.get(SAID).map(|packet| Sidecar { packet: packet.clone() });
+        let mut effective = Self { said, ..Self::default() };
         effective.lay(&Layer::flags(values)?);
         Ok(effective)
     }

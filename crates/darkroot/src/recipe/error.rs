@@ -115,6 +115,12 @@ pub enum RecipeError {
         /// The file.
         path: PathBuf,
     },
+    /// A sidecar of XMP that is none.
+    #[error("{message}")]
+    Sidecar {
+        /// Which file, what is wrong, and what can be done.
+        message: String,
+    },
     /// A name that is no setting, not from a file.
     #[error("`{name}` is no setting; {}", instead(None))]
     Name {

@@ -50,7 +50,7 @@ impl Layers {
     /// What holds for a file. It need not exist.
     ///
     /// # Errors
-    /// A `darkroot.toml` above it, or its sidecar, cannot be read or is wrong.
+    /// A `darkroot.toml` above it, or one of its sidecars, cannot be read or is wrong.
     pub fn for_file(&mut self, input: &Path) -> Result<Effective, RecipeError> {
         let folder = input.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut effective = self.for_folder(folder)?;
@@ -58,6 +58,9 @@ impl Layers {
             && let Some(layer) = file::read_if_there(&sidecar(input), Origin::Sidecar)?
         {
             effective.lay(&layer);
+        }
+        if self.folders {
+            effective.read_sidecar(input)?;
         }
         Ok(effective)
     }

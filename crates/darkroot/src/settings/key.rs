@@ -14,6 +14,8 @@ pub struct Key(usize);
 impl Key {
     /// Format of the outputs, which an output's name can say, too.
     pub const FORMAT: Self = Self::named("format");
+    /// The setting of what pictures say of themselves.
+    pub const METADATA: Self = Self::named("metadata");
 
     /// Every key, in the order of the table.
     pub fn all() -> impl Iterator<Item = Self> {

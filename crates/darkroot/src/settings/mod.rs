@@ -8,6 +8,7 @@ pub use setting::{Changes, Group, Kind, Setting, Word};
 pub mod from_chart;
 pub use from_chart::{ChartShot, FromChart};
 
+mod about;
 mod geometry;
 mod tones;
 mod words;
@@ -34,6 +35,7 @@ use darkroot_raw::{Decoder, Limits};
 
 use crate::files::Tree;
 use crate::light::LightSource;
+use crate::metadata::About;
 
 /// Which profile gives the colours.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -72,6 +74,8 @@ pub struct Settings {
     pub format: Option<Format>,
     /// Pixels an inch on paper that files shall state; else they state what the camera wrote.
     pub dpi: Option<u32>,
+    /// What the picture says of itself.
+    pub about: About,
     /// What is taken from a shot of a chart.
     pub chart: FromChart,
     /// What was asked for that is not the default, as texts by name: for the provenance of a reproduction.

@@ -3,6 +3,7 @@
 //! Options of the command line with their help, recipe files and their errors, JSON and whatever face comes next are
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
+use super::about::{ARTIST, COPYRIGHT, METADATA, SET_TAG};
 use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
@@ -22,7 +23,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 45] = [
+pub const SETTINGS: [Setting; 49] = [
     Setting {
         name: "format",
         alias: None,
@@ -101,6 +102,10 @@ pub const SETTINGS: [Setting; 45] = [
         changes: Changes::Encoding,
         set: |to, text| put(&mut to.encode.compression, one_of(&COMPRESSION, text)),
     },
+    METADATA,
+    ARTIST,
+    COPYRIGHT,
+    SET_TAG,
     Setting {
         name: "exposure",
         alias: None,

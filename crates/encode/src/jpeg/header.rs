@@ -2,6 +2,8 @@
 
 use darkroot_photo::Size;
 
+use crate::iptc;
+
 use super::tables::{Kind, ZIGZAG};
 use super::units::Subsampling;
 
@@ -23,6 +25,8 @@ pub(super) struct Header<'a> {
     pub(super) exif: &'a [u8],
     /// Packet of XMP, or nothing. One that is too large for a segment is left out.
     pub(super) xmp: &'a [u8],
+    /// Block of IPTC-IIM, or nothing. One that is too large for a segment is left out.
+    pub(super) iptc: &'a [u8],
 }
 
 impl Header<'_> {
@@ -37,6 +41,10 @@ impl Header<'_> {
         const XMP: &[u8] = b"http://ns.adobe.com/xap/1.0/\0";
         if (1..=SEGMENT - XMP.len()).contains(&self.xmp.len()) {
             segment(&mut out, 0xe1, &[XMP, self.xmp]);
+        }
+        let resources = iptc::resources(self.iptc);
+        if !self.iptc.is_empty() && resources.len() <= SEGMENT {
+            segment(&mut out, 0xed, &[&resources]);
         }
         const ICC: &[u8] = b"ICC_PROFILE\0";
         let parts = self.profile.chunks(SEGMENT - ICC.len() - 2);

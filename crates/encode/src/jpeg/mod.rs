@@ -51,6 +51,7 @@ pub(crate) fn write<T: Sample>(
         profile: &profile_of(space),
         exif: &block_that_fits(metadata)?,
         xmp: exif::xmp(metadata),
+        iptc: exif::iptc(metadata),
     };
     out.write_all(&header.bytes()).map_err(Error::Io)?;
     let scan = Scan::new(subsampling, options.quality);

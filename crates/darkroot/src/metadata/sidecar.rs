@@ -1,0 +1,53 @@
+//! The sidecar that other programs write beside a raw file: `DSC_0001.xmp` (Lightroom) or `DSC_0001.NEF.xmp` (darktable,
+//! digiKam).
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use super::spaces::{PHOTOSHOP, is_of_the_raw_file};
+use super::xmp::Xmp;
+use crate::{files, quoted, shown};
+
+/// No sidecar is larger, in bytes.
+const LARGEST: u64 = 8 << 20;
+
+/// What a sidecar says of the picture, without what is of the raw file or of another program's rendering.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Sidecar {
+    /// As a packet of XMP.
+    pub(crate) packet: String,
+}
+
+/// What stands beside a raw file; where both names are there, the longer counts more.
+///
+/// # Errors
+/// Which file cannot be used, why, and what can be done.
+pub(crate) fn beside(input: &Path) -> Result<Option<Sidecar>, String> {
+    let mut longer = OsString::from(input);
+    longer.push(".xmp");
+    let mut said = Xmp::default();
+    for (path, for_all) in [(input.with_extension("xmp"), true), (longer.into(), false)] {
+        // Nothing, a folder that is closed to us, or a name that is too long; a link that leads nowhere is an error.
+        if path == input || path.symlink_metadata().is_err() {
+            continue;
+        }
+        let wrong = |why: String| {
+            let (path, why) = (shown(&path), quoted(&why));
+            format!(
+                "{path}: the sidecar is no XMP: {why}; mend or remove it, or do without (metadata = \"basic\")"
+            )
+        };
+        let bytes = files::read_up_to(&path, LARGEST).map_err(|e| e.to_string())?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong("it is not text in UTF-8".to_owned()))?;
+        let xmp = Xmp::parse(&text).map_err(wrong)?;
+        // DSC_0001.xmp may be for DSC_0001.JPG.
+        let ending = xmp.text(PHOTOSHOP, "SidecarForExtension");
+        let ours = input.extension().and_then(|e| e.to_str());
+        let other = for_all && ending.zip(ours).is_some_and(|(a, b)| !a.eq_ignore_ascii_case(b));
+        if !other {
+            said.lay(&xmp);
+        }
+    }
+    said.said.retain(|name, _| !is_of_the_raw_file(&name.space, &name.local));
+    Ok((!said.said.is_empty()).then(|| Sidecar { packet: said.packet() }))
+}
