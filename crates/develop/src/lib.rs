@@ -19,7 +19,7 @@
 pub mod recipe;
 pub use recipe::{
     Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Gamut, Geometry, Highlights, HotPixels, Lens,
-    Look, Output, OutputSpace, Recipe, Resize, Tones, Turn,
+    Look, Output, OutputSpace, Points, PointsError, Recipe, Resize, Tones, Turn,
 };
 
 pub mod error;

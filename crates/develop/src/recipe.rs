@@ -3,7 +3,7 @@
 use darkroot_colour::RgbSpace;
 
 pub use crate::geometry::{Crop, Flip, Geometry, Lens, Resize, Turn};
-pub use crate::tone::Tones;
+pub use crate::tone::{Points, PointsError, Tones};
 
 /// How a photograph shall be developed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -18,6 +18,8 @@ use adjust::Table;
 
 mod adjust;
 pub use adjust::Tones;
+mod points;
+pub use points::{Points, PointsError};
 
 /// The curve of a look, with what a person changed about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,8 +65,12 @@ impl Curve {
             let t = METERED_GREY.powf(f64::from(quarters) / 4.0);
             let k = t * (1.0 - shown_grey) / (shown_grey - t);
             let base = Base { quarters, k: k as f32 };
-            let table =
-                (!tones.keeps_curve()).then(|| Table::of(tones, METERED_GREY, |light| base.at(light)));
+            let table = (!tones.keeps_curve()).then(|| {
+                Table::of(tones, METERED_GREY, |light| {
+                    let shown = base.at(light);
+                    tones.curve.map_or(shown, |points| points.light(shown))
+                })
+            });
             let to_cones = rows(&from_rgb(&RgbSpace::REC2020));
             let colours = Colours { chroma: chroma * tones.saturation, vibrance: tones.vibrance, to_cones };
             Self { base, table, colours }

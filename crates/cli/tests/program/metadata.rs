@@ -196,7 +196,7 @@ fn a_sidecar_that_cannot_be_read_is_told_and_can_be_left_out() {
     desk.put("a.dng.xmp", "<x:xmpmeta");
     desk.fails(2, &["develop", "a.dng"], &["a.dng.xmp", "no XMP", "metadata"]);
     desk.develop(&["a.dng", "--metadata", "basic"]);
-    desk.fails(2, &["develop", "a.dng", "--set-tag", "Rating=4"], &["set-tag", "xmp:Rating=4"]);
+    desk.fails(2, &["develop", "a.dng", "--set-tag", "Rating=4"], &["set-tag", "PREFIX:NAME=VALUE"]);
 }
 
 #[test]

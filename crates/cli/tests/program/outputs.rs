@@ -288,3 +288,24 @@ fn tones_of_a_look_are_changed_as_asked() {
     assert!(mean(&["--saturation", "0"]).1 < 0.02 * spread);
     assert!(mean(&["--vibrance", "1"]).1 > 1.05 * spread);
 }
+
+#[test]
+fn a_curve_by_points_darkens_what_it_shall_and_needs_a_look() {
+    let desk = Desk::with_dng();
+    let mean = |name: &str| {
+        let picture = image::open(desk.path(name)).unwrap().to_rgb8();
+        picture.iter().map(|&v| f64::from(v)).sum::<f64>() / picture.len() as f64
+    };
+    desk.develop(&["a.dng", "-o", "plain.png"]);
+    desk.develop(&["a.dng", "-o", "same.png", "--curve", "50:50"]);
+    desk.develop(&["a.dng", "-o", "dark.png", "--curve", "20:10, 50:30"]);
+    assert!((mean("same.png") - mean("plain.png")).abs() < 0.1);
+    assert!(mean("dark.png") < mean("plain.png") - 10.0);
+    desk.put("r.toml", "curve = \"20:10,50:30\"\n");
+    desk.develop(&["a.dng", "-o", "recipe.png", "--recipe", "r.toml"]);
+    assert!(desk.read("recipe.png") == desk.read("dark.png"));
+    for wrong in ["50", "50:x", "50:60,60:50", "20:10,20:30", "0:101"] {
+        desk.fails(2, &["develop", "a.dng", "--curve", wrong], &["curve", "BEFORE:AFTER"]);
+    }
+    desk.fails(2, &["develop", "a.dng", "-o", "o.tif", "--look", "linear", "--curve", "50:40"], &["curve"]);
+}

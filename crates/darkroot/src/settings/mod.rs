@@ -253,7 +253,9 @@ fn check_preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsErr
         ("profile", matches!(settings.profile, ProfileChoice::File(_))),
         ("engine", settings.engine == Engine::Imagepipe),
     ];
-    let settings: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    let mut settings: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    // The camera's rendering has its own curve, and no look is laid over it.
+    settings.extend(tones::changed(&recipe.tones));
     if settings.is_empty() { Ok(()) } else { Err(SettingsError::Preview { settings }) }
 }
 

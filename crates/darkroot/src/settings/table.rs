@@ -10,7 +10,9 @@ use super::geometry::{
 };
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
-use super::tones::{BLACK, CONTRAST, HIGHLIGHTS as HIGHLIGHTS_TONE, SATURATION, SHADOWS, VIBRANCE, WHITE};
+use super::tones::{
+    BLACK, CONTRAST, CURVE, HIGHLIGHTS as HIGHLIGHTS_TONE, SATURATION, SHADOWS, VIBRANCE, WHITE,
+};
 use super::words::{
     AUTO, BITS, CHROMA, COMPRESSION, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS,
     LOOKS, SWITCH, plain,
@@ -23,7 +25,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 49] = [
+pub const SETTINGS: [Setting; 50] = [
     Setting {
         name: "format",
         alias: None,
@@ -182,6 +184,7 @@ pub const SETTINGS: [Setting; 49] = [
     HIGHLIGHTS_TONE,
     BLACK,
     WHITE,
+    CURVE,
     SATURATION,
     VIBRANCE,
     Setting {

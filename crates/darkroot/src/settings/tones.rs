@@ -1,6 +1,6 @@
 //! Settings of what is changed about a look: their rows of the table.
 
-use darkroot_develop::Tones;
+use darkroot_develop::{Points, Tones};
 
 use super::Settings;
 use super::setting::{Changes, Group, Kind, Setting};
@@ -69,6 +69,38 @@ pub(super) const WHITE: Setting = row(
     "Stops by which what is nearly white gets brighter, -1 to 1",
     |to, text| put(&mut to.recipe.tones.white, number(text).map(|n| n as f32)),
 );
+pub(super) const CURVE: Setting = Setting {
+    name: "curve",
+    alias: None,
+    noun: "tone curve",
+    kind: Kind::Text {
+        form: "points BEFORE:AFTER of lightness (0 black, 50 middle grey, 100 white) with commas between them, at most 16, from \
+               dark to light, that do not fall",
+        example: "\"25:18,75:82\"",
+    },
+    default: "",
+    group: Group::Picture,
+    placeholder: "POINTS",
+    help: "Tone curve through points of lightness as the look shows it and as it shall be: 25:18,75:82 darkens shadows and \
+           brightens highlights; black and white stay where nothing is said of 0 and 100",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.recipe.tones.curve, points(text)),
+};
+
+/// Points of a curve; none of an empty text.
+fn points(text: &str) -> Result<Option<Points>, NotAValue> {
+    if text.trim().is_empty() {
+        return Ok(None);
+    }
+    let wrong = || NotAValue::of(&CURVE, text);
+    let one = |pair: &str| {
+        let (before, after) = pair.split_once(':')?;
+        Some([before.trim().parse().ok()?, after.trim().parse().ok()?])
+    };
+    let points: Option<Vec<[f64; 2]>> = text.split(',').map(one).collect();
+    Points::new(&points.ok_or_else(wrong)?).map(Some).map_err(|_| wrong())
+}
+
 pub(super) const SATURATION: Setting = row(
     "saturation",
     "saturation",
@@ -98,5 +130,7 @@ pub(super) fn changed(tones: &Tones) -> Vec<&'static str> {
         (SATURATION.name, tones.saturation, fixed.saturation),
         (VIBRANCE.name, tones.vibrance, fixed.vibrance),
     ];
-    pairs.iter().filter(|(_, asked, fixed)| (asked - fixed).abs() > 0.0).map(|(name, ..)| *name).collect()
+    let by_amount =
+        pairs.iter().filter(|(_, asked, fixed)| (asked - fixed).abs() > 0.0).map(|(name, ..)| *name);
+    by_amount.chain(tones.curve.map(|_| CURVE.name)).collect()
 }

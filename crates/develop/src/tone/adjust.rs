@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::Points;
+
 /// Changes of a look. All are 0 (saturation 1) where nothing is changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tones {
@@ -19,6 +21,8 @@ pub struct Tones {
     /// Stops by which what is nearly white gets brighter: all of it three stops above middle grey, where sensors clip, none
     /// at one. -1..=1.
     pub white: f32,
+    /// Lightness that is shown in place of what all of the above gives.
+    pub curve: Option<Points>,
     /// Factor on chroma, 0..=2.
     pub saturation: f32,
     /// How much more chroma pale colours get, as a share of what they have; pure ones get none. -1..=1.
@@ -33,6 +37,7 @@ impl Default for Tones {
             highlights: 0.0,
             black: 0.0,
             white: 0.0,
+            curve: None,
             saturation: 1.0,
             vibrance: 0.0,
         }
@@ -42,7 +47,8 @@ impl Default for Tones {
 impl Tones {
     /// Whether brightness stays as the look has it.
     pub(super) fn keeps_curve(&self) -> bool {
-        [self.contrast, self.shadows, self.highlights, self.black, self.white].iter().all(|v| *v == 0.0)
+        let zones = [self.contrast, self.shadows, self.highlights, self.black, self.white];
+        self.curve.is_none() && zones.iter().all(|v| *v == 0.0)
     }
 
     /// Stops that light gets which is so many stops brighter than middle grey.
@@ -66,7 +72,7 @@ fn zone(stops: f64, none: f64, all: f64) -> f64 {
     along * along * (3.0 - 2.0 * along)
 }
 
-/// Lowest and highest power of two of scene light in the table; below, it goes straight to 0.
+/// Lowest and highest power of two of scene light in the table; below, it goes straight to what is shown of none.
 const POWERS: (i32, i32) = (-18, 20);
 /// Bits of the mantissa that tell entries apart.
 const BITS: u32 = 6;
@@ -77,7 +83,11 @@ const LEAST_RISE: f64 = 1e-4;
 
 /// A curve as a table over scene light, 2^6 entries for each doubling, straight between them.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Table(Arc<[f32]>);
+pub(super) struct Table {
+    entries: Arc<[f32]>,
+    /// What is shown of no light.
+    black: f32,
+}
 
 impl Table {
     /// What a curve shows of light after `tones` changed it about `grey`.
@@ -92,7 +102,7 @@ impl Table {
             last = (stops + tones.stops(stops)).max(last + LEAST_RISE);
             curve((grey * last.exp2()) as f32)
         };
-        Self((0..=count).map(entry).collect())
+        Self { entries: (0..=count).map(entry).collect(), black: curve(0.0) }
     }
 
     /// What is shown of scene light, which is not negative.
@@ -103,10 +113,10 @@ impl Table {
         let place = bits >> (23 - BITS);
         if place < first {
             // Under the table.
-            return self.0[0] * light * UNDER;
+            return self.black + (self.entries[0] - self.black) * light * UNDER;
         }
-        let i = ((place - first) as usize).min(self.0.len() - 2);
+        let i = ((place - first) as usize).min(self.entries.len() - 2);
         let part = (bits & ((1 << (23 - BITS)) - 1)) as f32 * (1.0 / (1u32 << (23 - BITS)) as f32);
-        self.0[i] + part * (self.0[i + 1] - self.0[i])
+        self.entries[i] + part * (self.entries[i + 1] - self.entries[i])
     }
 }

@@ -223,6 +223,25 @@ fn the_table_is_the_curve_where_nothing_is_changed_and_zones_move_by_the_stops_a
 }
 
 #[test]
+fn a_curve_by_points_is_what_the_look_shows_in_the_lightness_asked_for() {
+    let lightness = |shown: f32| 100.0 * darkroot_colour::TransferCurve::LStar.encode(f64::from(shown));
+    let points = Points::new(&[[0.0, 8.0], [30.0, 20.0], [70.0, 80.0]]).unwrap();
+    for look in LOOKS {
+        let plain = Curve::of(look, &Tones::default()).unwrap();
+        let curve = Curve::of(look, &Tones { curve: Some(points), ..Tones::default() }).unwrap();
+        assert!((lightness(curve.at(0.0)) - 8.0).abs() < 1e-3);
+        let mut previous = 0.0;
+        for i in 0..4000 {
+            let light = (f64::from(i) * 0.0075 - 22.0).exp2() as f32;
+            let (now, wanted) = (curve.at(light), points.lightness(lightness(plain.at(light))));
+            assert!((lightness(now) - wanted).abs() < 0.02, "{look:?} at {light}: {now} {wanted}");
+            assert!(now >= previous && now <= 1.0, "{look:?} at {light}");
+            previous = now;
+        }
+    }
+}
+
+#[test]
 fn saturation_and_vibrance_keep_hue_and_lightness_and_leave_grey() {
     let scene: Vec<[f64; 3]> = (0..12)
         .flat_map(|hue| [0.15, 0.5].map(|share| of_hue(f64::from(hue) * 30.0, share).map(|v| v * 0.15)))
