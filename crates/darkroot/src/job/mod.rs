@@ -118,7 +118,7 @@ pub fn develop_into(
                 let raw = (from_chart::file_name(input), hash);
                 origin =
                     provenance::fields(&provenance::Known { raw, settings, profile, chart, plan: &plan });
-                notes.extend(report::without_provenance(format));
+                notes.extend(report::without_provenance(format, settings.about.keep));
             }
             let metadata = of_picture(photo.capture(), &plan.picture_space(), dpi, &settings.about, &origin);
             drop(chosen);

@@ -9,6 +9,7 @@ use darkroot_photo::{Capture, PictureSpace, Size};
 use darkroot_profile::Profile;
 
 use crate::ChosenProfile;
+use crate::metadata::Keep;
 use serde::Serialize;
 
 /// What was done to one file.
@@ -107,9 +108,13 @@ pub(super) fn far_light(profile: &Profile, white: Temperature) -> Option<String>
 }
 
 /// What is said where a reproduction's file does not tell how it came about.
-pub(super) fn without_provenance(format: Format) -> Option<String> {
-    let has = matches!(format, Format::Tiff | Format::Jpeg | Format::Png);
-    (!has).then(|| format!("{format} gets no provenance: TIFF, JPEG and PNG have it in XMP"))
+pub(super) fn without_provenance(format: Format, keep: Keep) -> Option<String> {
+    let has_place = !matches!(format, Format::Avif | Format::Exr);
+    if keep == Keep::None {
+        return Some("without metadata the picture does not tell how it came about".to_owned());
+    }
+    (!has_place)
+        .then(|| format!("{format} gets no provenance: it has no place for XMP, as TIFF and JPEG have"))
 }
 
 /// What can be said of every picture.
