@@ -49,6 +49,7 @@ fn main() {
     LINES.iter().enumerate().for_each(|(n, line)| put("worker", &n.to_string(), line.as_bytes()));
     pictures(&put);
     deliveries(&put);
+    descriptions(&put);
 }
 
 /// A profile in the forms of other programs.
@@ -85,6 +86,14 @@ fn pictures(put: &dyn Fn(&str, &str, &[u8])) {
     }
 }
 
+/// What people write into raw files and beside them.
+fn descriptions(put: &dyn Fn(&str, &str, &[u8])) {
+    put("xmp", "xmp", XMP.as_bytes());
+    let datasets =
+        [(5, "Fog"), (25, "fog"), (25, "lake"), (55, "20261127")].map(|(n, text)| (n, text.to_owned()));
+    put("iptc", "iim", &darkroot_encode::iptc::write(&datasets));
+}
+
 /// Finished pictures with colour profiles.
 fn deliveries(put: &dyn Fn(&str, &str, &[u8])) {
     let (_, raw) = small_raws::all().into_iter().next().unwrap();
@@ -98,6 +107,12 @@ fn deliveries(put: &dyn Fn(&str, &str, &[u8])) {
         put("delivered", format.extension(), &bytes);
     }
 }
+
+const XMP: &str = "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\
+    <rdf:Description xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" xmlns:dc=\"http://purl.org/dc/elements/1.1/\" xmp:Rating=\"4\">\
+    <dc:title><rdf:Alt><rdf:li xml:lang=\"x-default\">Fog</rdf:li></rdf:Alt></dc:title><dc:subject><rdf:Bag>\
+    <rdf:li>fog</rdf:li></rdf:Bag></dc:subject><dc:relation rdf:parseType=\"Resource\"><dc:type>a</dc:type></dc:relation>\
+    </rdf:Description></rdf:RDF></x:xmpmeta>";
 
 /// Which directory, then make, an exposure time, a lens and a date.
 const EXIF: &[u8] = b"\0\x03\0\x9a\x82\x05\0\x01\0\0\0\x40\0\0\0\x03\x90\x02\0\x14\0\0\0\x40\0\0\0\x34\xa4\x02\0\x04\0\0\0abc\0\0\0\0\0";
