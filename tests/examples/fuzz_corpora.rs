@@ -90,8 +90,8 @@ fn pictures(put: &dyn Fn(&str, &str, &[u8])) {
 fn descriptions(put: &dyn Fn(&str, &str, &[u8])) {
     put("xmp", "xmp", XMP.as_bytes());
     let datasets =
-        [(5, "Fog"), (25, "fog"), (25, "lake"), (55, "20261127")].map(|(n, text)| (n, text.to_owned()));
-    put("iptc", "iim", &darkroot_encode::iptc::write(&datasets));
+        b"\x1c\x01\x5a\0\x03\x1b%G\x1c\x02\x05\0\x03Fog\x1c\x02\x19\0\x03fog\x1c\x02\x37\0\x0820261127";
+    put("iptc", "iim", datasets);
 }
 
 /// Finished pictures with colour profiles.
