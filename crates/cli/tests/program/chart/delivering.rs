@@ -175,12 +175,12 @@ fn another_shot_gives_the_exposure_and_says_so_where_it_does_not_hold() {
     let file = desk.read("o.tif");
     let find = |words: &str| file.windows(words.len()).any(|w| w == words.as_bytes());
     for words in [
-        "darkroot:ProfileSha256=",
-        "darkroot:ChartShot=\"chart.dng\"",
-        "darkroot:ChartShotSha256=",
-        "darkroot:Light=\"D50\"",
+        "<darkroot:ProfileSha256>",
+        "<darkroot:ChartShot>chart.dng<",
+        "<darkroot:ChartShotSha256>",
+        "<darkroot:Light>D50<",
         "look=reproduction",
-        "xmp:CreatorTool=\"Darkroot ",
+        "<xmp:CreatorTool>Darkroot ",
     ] {
         assert!(find(words), "no `{words}` in the XMP");
     }
