@@ -3,11 +3,10 @@
 use darkroot_colour::temperature::Temperature;
 use darkroot_develop::Plan;
 use darkroot_profile::Profile;
-use roxmltree::{Document, ParsingOptions};
 
 use crate::from_chart::{Told, file_name};
 use crate::light::LightSource;
-use crate::metadata::DARKROOT as NAMESPACE;
+use crate::metadata::{DARKROOT, Xmp};
 use crate::settings::{Key, Settings};
 use crate::{ChosenProfile, files};
 
@@ -95,19 +94,8 @@ fn settings_in_words(settings: &Settings) -> String {
 
 /// The light that a packet of XMP says a reproduction is for; `None` where it says none.
 pub(crate) fn light_in(packet: &[u8]) -> Option<LightSource> {
-    /// No packet has more elements.
-    const MOST_NODES: u32 = 100_000;
-    let text = std::str::from_utf8(packet).ok()?;
-    let text = text.trim_end_matches(['\0', ' ', '\n']);
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).ok()?;
-    let mut nodes = document.descendants();
-    // Other programs may have made an element of it.
-    let name = nodes.find_map(|node| {
-        let is_light = node.has_tag_name((NAMESPACE, "Light"));
-        node.attribute((NAMESPACE, "Light")).or_else(|| is_light.then(|| node.text()).flatten())
-    })?;
-    by_name(name)
+    let xmp = Xmp::parse(std::str::from_utf8(packet).ok()?).ok()?;
+    by_name(&xmp.text(DARKROOT, "Light")?)
 }
 
 #[cfg(test)]
@@ -117,13 +105,16 @@ mod tests {
     #[test]
     fn the_light_is_read_back_from_attributes_and_elements() {
         let packet = |inner: &str| {
-            format!("<x:xmpmeta xmlns:x=\"adobe:ns:meta/\" xmlns:d=\"{NAMESPACE}\">{inner}</x:xmpmeta>")
+            format!(
+                "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\" xmlns:d=\"{DARKROOT}\"><r:RDF \
+                 xmlns:r=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">{inner}</r:RDF></x:xmpmeta>"
+            )
         };
         let kelvin =
             |inner: &str| light_in(packet(inner).as_bytes()).map(|light| light.light.kelvin().round());
-        assert_eq!(kelvin("<a d:Light=\"A\"/>"), Some(2856.0));
-        assert_eq!(kelvin("<a><d:Light>3200 K</d:Light></a>"), Some(3200.0));
-        assert_eq!(kelvin("<a d:Light=\"moonshine\"/>"), None);
+        assert_eq!(kelvin("<r:Description d:Light=\"A\"/>"), Some(2856.0));
+        assert_eq!(kelvin("<r:Description><d:Light>3200 K</d:Light></r:Description>"), Some(3200.0));
+        assert_eq!(kelvin("<r:Description d:Light=\"moonshine\"/>"), None);
         assert_eq!(light_in(b"\xff\xfe no text"), None);
         assert_eq!(light_in(b"<a><b></a>"), None);
     }

@@ -3,8 +3,9 @@
 
 use darkroot_photo::{CameraSpace, Display, Orientation, Rect, Rgb, Scene, Size};
 
+use crate::gamut::Mapping;
 use crate::grid::Grid;
-use crate::plan::{Mapping, Plan};
+use crate::plan::Plan;
 use crate::transfer::{self, Sample};
 use crate::{correct, exposure, gamut, highlights, tally, tone};
 

@@ -8,6 +8,30 @@ use darkroot_colour::{Matrix3, RgbSpace, white};
 use darkroot_photo::{Display, Rgb, Scene, Toned};
 
 use crate::cones::{self, Rows, along_hue, from_rgb, greater, lesser, rows, times};
+use crate::recipe::Gamut;
+
+/// What becomes of colours that the output cannot show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mapping {
+    /// Nothing: floating point keeps them.
+    Kept,
+    /// They are cut, and counted.
+    Clipped,
+    /// They are moved inside.
+    Mapped,
+}
+
+impl Mapping {
+    /// As asked, or as suits the look.
+    pub(crate) fn of(asked: Gamut, linear: bool, reproduced: bool) -> Self {
+        match asked {
+            _ if linear => Self::Kept,
+            Gamut::Clip => Self::Clipped,
+            Gamut::Auto if reproduced => Self::Clipped,
+            Gamut::Auto | Gamut::Map => Self::Mapped,
+        }
+    }
+}
 
 /// To the linear RGB of an output space, white to white.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,14 +13,14 @@ use crate::corrections::is_supported;
 use crate::demosaic::Method;
 use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
-use crate::gamut::Primaries;
+use crate::gamut::{Mapping, Primaries};
 use crate::geometry::{Geometry, Laid, Lens, lay};
 use crate::highlights::{CLIPPED, Rebuild, Treatment};
 use crate::lateral::Lateral;
 use crate::light::LinearLight;
 use crate::mend::Mends;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Denoise, Exposure, Gamut, Highlights, HotPixels, Look, OutputSpace, Recipe};
+use crate::recipe::{Bits, Denoise, Exposure, Highlights, HotPixels, Look, OutputSpace, Recipe};
 use crate::sharpen::Sharpener;
 use crate::tally::{Clipped, Tally};
 use crate::tone::Curve;
@@ -40,17 +40,6 @@ pub enum Colours {
     Assumed,
     /// Monochrome sensor.
     Grey,
-}
-
-/// What becomes of colours that the output cannot show.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mapping {
-    /// Nothing: floating point keeps them.
-    Kept,
-    /// They are cut, and counted.
-    Clipped,
-    /// They are moved inside.
-    Mapped,
 }
 
 /// A recipe made ready for one capture, with the capture.
@@ -188,7 +177,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
             PlaneModel::new(&model.then(&to_scene))
         }),
         colour_model: (!camera_output).then_some(model),
-        gamut: mapping(recipe.gamut, linear, reproduced),
+        gamut: Mapping::of(recipe.gamut, linear, reproduced),
         tally: Arc::default(),
         curve,
         primaries: Primaries::new(&space),
@@ -210,16 +199,6 @@ fn noise_left(
         Noise::of(analysis.noise(), multipliers).times(left)
     } else {
         Noise::NONE
-    }
-}
-
-/// What becomes of colours that the output cannot show, as asked or as suits the look.
-fn mapping(asked: Gamut, linear: bool, reproduced: bool) -> Mapping {
-    match asked {
-        _ if linear => Mapping::Kept,
-        Gamut::Clip => Mapping::Clipped,
-        Gamut::Auto if reproduced => Mapping::Clipped,
-        Gamut::Auto | Gamut::Map => Mapping::Mapped,
     }
 }
 

@@ -43,50 +43,56 @@ pub fn block(metadata: &Metadata) -> Vec<u8> {
     }
 }
 
-/// When a finished picture says that it was taken ("2026:05:01 12:00:00"), from the bytes of its file; `None` where it does
-/// not say so.
-pub fn date_of(file: &[u8]) -> Option<String> {
-    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(file)).ok()?;
-    let field = exif.get_field(Tag::DateTimeOriginal, In::PRIMARY)?;
-    match &field.value {
+/// What a finished picture states of itself.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Stated {
+    /// When it was taken ("2026:05:01 12:00:00").
+    pub date: Option<String>,
+    /// Pixels an inch; none where it states 72, as Exif has it where nobody knows (Exif 2.32, 4.6.4).
+    pub resolution: Option<f64>,
+}
+
+/// What the bytes of a finished picture's file state; nothing where there is no Exif.
+pub fn stated(file: &[u8]) -> Stated {
+    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(file));
+    exif.map_or_else(
+        |_| Stated::default(),
+        |exif| Stated { date: date(&exif), resolution: resolution(&exif) },
+    )
+}
+
+fn date(exif: &exif::Exif) -> Option<String> {
+    match &exif.get_field(Tag::DateTimeOriginal, In::PRIMARY)?.value {
         exif::Value::Ascii(texts) => texts.first().and_then(|text| String::from_utf8(text.clone()).ok()),
         _ => None,
     }
 }
 
-/// Pixels an inch that a finished picture states, from the bytes of its file; `None` where it states none.
-pub fn resolution_of(file: &[u8]) -> Option<f64> {
+fn resolution(exif: &exif::Exif) -> Option<f64> {
     const CENTIMETRE: u32 = 3;
-    const INCH: u32 = 2;
-    let exif = exif::Reader::new().read_from_container(&mut Cursor::new(file)).ok()?;
     let unit = exif.get_field(Tag::ResolutionUnit, In::PRIMARY).and_then(|field| field.value.get_uint(0));
     let exif::Value::Rational(value) = &exif.get_field(Tag::XResolution, In::PRIMARY)?.value else {
         return None;
     };
     let value = value.first()?.to_f64();
-    let stated = match unit {
-        Some(CENTIMETRE) => 2.54 * value,
-        None | Some(INCH) => value,
-        Some(_) => return None,
+    let inch = u32::from(INCH);
+    let stated = match unit.unwrap_or(inch) {
+        CENTIMETRE => 2.54 * value,
+        unit if unit == inch => value,
+        _ => return None,
     };
-    (stated.is_finite() && stated > 0.0).then_some(stated)
+    let is_stated = stated.is_finite() && stated > 0.0 && (stated - f64::from(UNKNOWN)).abs() > 1e-6;
+    is_stated.then_some(stated)
 }
 
 /// The packet of XMP, where there is one. TIFF has a field for it; other formats have a place outside of Exif.
 pub(crate) fn xmp(metadata: &Metadata) -> &[u8] {
-    bytes(metadata, tag::XMP)
+    metadata.bytes(Directory::Image, tag::XMP).unwrap_or_default()
 }
 
 /// The block of IPTC-IIM, where there is one: in TIFF a field, in JPEG a place outside of Exif.
 pub(crate) fn iptc(metadata: &Metadata) -> &[u8] {
-    bytes(metadata, tag::IPTC)
-}
-
-fn bytes(metadata: &Metadata, tag: u16) -> &[u8] {
-    match metadata.get(Directory::Image, tag) {
-        Some(Value::Bytes(bytes) | Value::Undefined(bytes)) => bytes,
-        _ => &[],
-    }
+    metadata.bytes(Directory::Image, tag::IPTC).unwrap_or_default()
 }
 
 /// Whether a field is none of the Exif block but stands beside it.
@@ -126,11 +132,10 @@ pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, 
 /// What every Exif of a JPEG states (Exif 2.32, table 20): 72 pixels an inch where nobody says another number, samples of
 /// colour in the middle, the order of components.
 fn required_of_jpeg(metadata: &mut Metadata) {
-    const INCH: u16 = 2;
     const CENTRED: u16 = 1;
     let required = [
-        (Directory::Image, tag::RESOLUTION[0], Value::Rationals(vec![(72, 1)])),
-        (Directory::Image, tag::RESOLUTION[1], Value::Rationals(vec![(72, 1)])),
+        (Directory::Image, tag::RESOLUTION[0], Value::Rationals(vec![(UNKNOWN, 1)])),
+        (Directory::Image, tag::RESOLUTION[1], Value::Rationals(vec![(UNKNOWN, 1)])),
         (Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH])),
         (Directory::Image, YCBCR_POSITIONING, Value::Shorts(vec![CENTRED])),
         (Directory::Exif, COMPONENTS, Value::Undefined(vec![1, 2, 3, 0])),
@@ -147,6 +152,9 @@ fn required_of_jpeg(metadata: &mut Metadata) {
 const UNCALIBRATED: u16 = 0xffff;
 const EXIF_VERSION: u16 = 0x9000;
 const COMPONENTS: u16 = 0x9101;
+/// ResolutionUnit: an inch, and what is stated where the resolution is not known.
+const INCH: u16 = 2;
+const UNKNOWN: u32 = 72;
 const FLASHPIX_VERSION: u16 = 0xa000;
 const YCBCR_POSITIONING: u16 = 0x0213;
 const PIXEL_X_DIMENSION: u16 = 0xa002;
@@ -296,5 +304,19 @@ mod tests {
             assert_eq!(number(&exif, Tag::PixelYDimension), Some(3));
             assert_eq!(number(&exif, Tag::YCbCrPositioning), Some(1));
         }
+    }
+
+    #[test]
+    fn a_resolution_that_nobody_asked_for_is_not_stated() {
+        let mut fields = metadata();
+        let size = Size { width: 5, height: 3 };
+        let space = PictureSpace::Rgb(RgbSpace::SRGB);
+        let back =
+            |fields: &Metadata| resolution(&read(block(&of_picture(fields, size, &space, Format::Jpeg))));
+        assert_eq!(back(&fields), None);
+        for tag in tag::RESOLUTION {
+            fields.set(Directory::Image, tag, Value::Rationals(vec![(300, 1)]));
+        }
+        assert_eq!(back(&fields), Some(300.0));
     }
 }

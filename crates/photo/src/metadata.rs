@@ -81,6 +81,14 @@ impl Metadata {
         }
     }
 
+    /// Bytes of a field that is made of them.
+    pub fn bytes(&self, directory: Directory, tag: u16) -> Option<&[u8]> {
+        match self.get(directory, tag)? {
+            Value::Bytes(bytes) | Value::Undefined(bytes) => Some(bytes),
+            _ => None,
+        }
+    }
+
     /// First number of a field, whatever its type.
     pub fn number(&self, directory: Directory, tag: u16) -> Option<f64> {
         let ratio = |n: f64, d: f64| (d != 0.0).then(|| n / d);

@@ -213,8 +213,7 @@ impl Opened {
     pub(crate) fn read(path: &Path) -> Result<Self, Error> {
         let of_profile = |fault| Error::chart(path, ChartError::SourceProfile(fault));
         let bytes = files::read(path)?;
-        let date = darkroot_encode::exif::date_of(&bytes).and_then(|text| crate::naming::date(&text));
-        let resolution = darkroot_encode::exif::resolution_of(&bytes);
+        let stated = darkroot_encode::exif::stated(&bytes);
         let encoded = rendered::encoded(path, &bytes)?;
         drop(bytes);
         let profile = match &encoded.icc {
@@ -230,8 +229,8 @@ impl Opened {
             is_tagged: encoded.icc.is_some(),
             has_tables: profile.has_tables(),
             bits: encoded.bits,
-            date,
-            resolution,
+            date: stated.date.and_then(|text| crate::naming::date(&text)),
+            resolution: stated.resolution,
             says: encoded.xmp.as_deref().and_then(provenance::light_in),
         })
     }

@@ -120,7 +120,7 @@ pub fn develop_into(
                     provenance::fields(&provenance::Known { raw, settings, profile, chart, plan: &plan });
                 notes.extend(report::without_provenance(format, settings.about.keep));
             }
-            let metadata = of_picture(photo.capture(), &plan.picture_space(), dpi, &settings.about, &origin);
+            let metadata = of_picture(photo.capture(), dpi, &settings.about, &origin);
             drop(chosen);
             drop(photo);
             if format.takes_bands() && control.seen.is_none() {
@@ -142,7 +142,7 @@ pub fn develop_into(
         }
         Engine::Imagepipe => {
             let (picture, report) = second_engine(input, photo.capture(), &recipe)?;
-            let metadata = of_picture(photo.capture(), &picture.space, settings.dpi, &settings.about, &[]);
+            let metadata = of_picture(photo.capture(), settings.dpi, &settings.about, &[]);
             (report, metadata, Some((picture, to)))
         }
     };
@@ -268,7 +268,7 @@ pub fn encode_picture(
     capture: &Capture,
 ) -> Result<Vec<u8>, darkroot_encode::Error> {
     let mut out = io::Cursor::new(Vec::new());
-    let metadata = of_picture(capture, &picture.space, None, &About::default(), &[]);
+    let metadata = of_picture(capture, None, &About::default(), &[]);
     darkroot_encode::write(picture, format, &darkroot_encode::Options::default(), &metadata, &mut out)?;
     Ok(out.into_inner())
 }

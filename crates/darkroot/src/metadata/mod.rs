@@ -12,11 +12,11 @@ mod xmp;
 use std::sync::Arc;
 
 use darkroot_encode::iptc as iim;
+use darkroot_photo::Capture;
 use darkroot_photo::metadata::{Directory, Field, Metadata, Value, tag};
-use darkroot_photo::{Capture, PictureSpace};
 
 use crate::VERSION;
-pub(crate) use sidecar::{Sidecar, beside};
+pub(crate) use sidecar::beside;
 pub(crate) use spaces::DARKROOT;
 use spaces::{DC, EXIF, XMP, is_of_the_raw_file};
 pub(crate) use tags::{Tag, parse as parse_tags};
@@ -52,10 +52,9 @@ pub struct About {
     pub(crate) sidecar: Option<Arc<Xmp>>,
 }
 
-/// What the picture of a capture says: `provenance` has names and values of how a reproduction came about.
+/// What the picture of a capture says; of its size and colours the encoder says what holds. `provenance` has names and values of how a reproduction came about.
 pub(crate) fn of_picture(
     capture: &Capture,
-    space: &PictureSpace,
     dpi: Option<u32>,
     about: &About,
     provenance: &[(&'static str, String)],
@@ -76,7 +75,9 @@ pub(crate) fn of_picture(
             said.set(DARKROOT, name, Said::text(value));
         }
     }
-    storage(&mut fields, space, dpi, about.keep);
+    if let Some(dpi) = dpi {
+        state_size(&mut fields, dpi);
+    }
     let block = iim::write(&iptc::datasets(&said));
     if !block.is_empty() {
         fields.set(Directory::Image, tag::IPTC, Value::Undefined(block));
@@ -98,11 +99,11 @@ fn said_by(fields: &Metadata, about: &About) -> Xmp {
     if about.keep == Keep::Basic {
         return said;
     }
-    if let Some(block) = bytes_of(fields, tag::IPTC) {
+    if let Some(block) = fields.bytes(Directory::Image, tag::IPTC) {
         said.lay(&iptc::said(&iim::read(block)));
     }
     // A packet that is none says nothing.
-    let packet = bytes_of(fields, tag::XMP).and_then(|packet| std::str::from_utf8(packet).ok());
+    let packet = fields.bytes(Directory::Image, tag::XMP).and_then(|packet| std::str::from_utf8(packet).ok());
     if let Some(xmp) = packet.and_then(|packet| Xmp::parse(packet).ok()) {
         said.lay(&xmp);
     }
@@ -132,13 +133,6 @@ fn is_block(field: &Field) -> bool {
     field.directory == Directory::Image && [tag::XMP, tag::IPTC].contains(&field.tag)
 }
 
-fn bytes_of(fields: &Metadata, tag: u16) -> Option<&[u8]> {
-    match fields.get(Directory::Image, tag)? {
-        Value::Bytes(bytes) | Value::Undefined(bytes) => Some(bytes),
-        _ => None,
-    }
-}
-
 fn kept(field: &Field, keep: Keep) -> bool {
     /// What tells one camera, lens or person from another.
     const WHOSE: [u16; 4] = [tag::SERIAL_NUMBERS[0], tag::SERIAL_NUMBERS[1], tag::OWNER, tag::UNIQUE_ID];
@@ -151,20 +145,11 @@ fn kept(field: &Field, keep: Keep) -> bool {
     }
 }
 
-/// What the fields say of the colours and of the size on paper.
-fn storage(fields: &mut Metadata, space: &PictureSpace, dpi: Option<u32>, keep: Keep) {
+/// What the fields say of the size on paper.
+fn state_size(fields: &mut Metadata, dpi: u32) {
     const INCH: u16 = 2;
-    const SRGB: u16 = 1;
-    const UNCALIBRATED: u16 = 65535;
-    if keep != Keep::None {
-        let srgb = *space == PictureSpace::Rgb(darkroot_colour::RgbSpace::SRGB);
-        let space = if srgb { SRGB } else { UNCALIBRATED };
-        fields.set(Directory::Exif, tag::COLOUR_SPACE, Value::Shorts(vec![space]));
+    for tag in tag::RESOLUTION {
+        fields.set(Directory::Image, tag, Value::Rationals(vec![(dpi, 1)]));
     }
-    if let Some(dpi) = dpi {
-        for tag in tag::RESOLUTION {
-            fields.set(Directory::Image, tag, Value::Rationals(vec![(dpi, 1)]));
-        }
-        fields.set(Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH]));
-    }
+    fields.set(Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH]));
 }

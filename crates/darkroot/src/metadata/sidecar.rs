@@ -11,18 +11,12 @@ use crate::{files, quoted, shown};
 /// No sidecar is larger, in bytes.
 const LARGEST: u64 = 8 << 20;
 
-/// What a sidecar says of the picture, without what is of the raw file or of another program's rendering.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Sidecar {
-    /// As a packet of XMP.
-    pub(crate) packet: String,
-}
-
-/// What stands beside a raw file; where both names are there, the longer counts more.
+/// What stands beside a raw file, as a packet of XMP, without what is of the raw file or of another program's rendering; where
+/// both names are there, the longer counts more.
 ///
 /// # Errors
 /// Which file cannot be used, why, and what can be done.
-pub(crate) fn beside(input: &Path) -> Result<Option<Sidecar>, String> {
+pub(crate) fn beside(input: &Path) -> Result<Option<String>, String> {
     let mut longer = OsString::from(input);
     longer.push(".xmp");
     let mut said = Xmp::default();
@@ -49,5 +43,5 @@ pub(crate) fn beside(input: &Path) -> Result<Option<Sidecar>, String> {
         }
     }
     said.said.retain(|name, _| !is_of_the_raw_file(&name.space, &name.local));
-    Ok((!said.said.is_empty()).then(|| Sidecar { packet: said.packet() }))
+    Ok((!said.said.is_empty()).then(|| said.packet()))
 }

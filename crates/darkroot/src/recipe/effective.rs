@@ -8,7 +8,7 @@ use std::sync::Arc;
 use darkroot_encode::Format;
 
 use super::{Layer, Origin, RecipeError};
-use crate::metadata::{self, Sidecar, Xmp};
+use crate::metadata::{self, Xmp};
 use crate::naming::{NamingError, Target};
 use crate::settings::{Key, Settings};
 
@@ -16,8 +16,8 @@ use crate::settings::{Key, Settings};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Effective {
     values: BTreeMap<Key, (String, Origin)>,
-    /// What the photograph's sidecar of XMP says.
-    said: Option<Sidecar>,
+    /// What the photograph's sidecar of XMP says, as a packet.
+    said: Option<String>,
 }
 
 /// What the sidecar says goes by this name among [`texts`](Effective::texts).
@@ -66,7 +66,7 @@ impl Effective {
                 settings.told.push((key.name(), text.clone()));
             }
         }
-        if let Some(Sidecar { packet }) = &self.said {
+        if let Some(packet) = &self.said {
             let said = Xmp::parse(packet).map_err(|message| RecipeError::Sidecar { message })?;
             settings.about.sidecar = Some(Arc::new(said));
         }
@@ -117,7 +117,7 @@ impl Effective {
 
     /// Name and text of every key: all that another process must know to make the same picture.
     pub fn texts(&self) -> BTreeMap<String, String> {
-        let said = self.said.iter().map(|said| (SAID.to_owned(), said.packet.clone()));
+        let said = self.said.iter().map(|said| (SAID.to_owned(), said.clone()));
         self.values.iter().map(|(key, (text, _))| (key.name().to_owned(), text.clone())).chain(said).collect()
     }
 
@@ -133,7 +133,7 @@ impl Effective {
         };
         let values: Vec<(Key, String)> =
             texts.iter().filter(|(name, _)| *name != SAID).map(named).collect::<Result<_, RecipeError>>()?;
-        let said = texts.get(SAID).map(|packet| Sidecar { packet: packet.clone() });
+        let said = texts.get(SAID).cloned();
         let mut effective = Self { said, ..Self::default() };
         effective.lay(&Layer::flags(values)?);
         Ok(effective)

@@ -77,14 +77,5 @@ pub(super) const SET_TAG: Setting = text(
         "PREFIX:NAME=VALUE with semicolons between them, with a prefix such as dc, xmp, photoshop or Iptc4xmpCore",
         "\"xmp:Rating=4; dc:subject=fog, lake\"",
     ),
-    |to, text| {
-        let tags = parse_tags(text).ok_or_else(|| {
-            NotAValue::plain(
-                text,
-                "list of properties",
-                "PREFIX:NAME=VALUE with semicolons between them, such as \"xmp:Rating=4; dc:title=Fog\"",
-            )
-        });
-        put(&mut to.about.tags, tags)
-    },
+    |to, text| put(&mut to.about.tags, parse_tags(text).ok_or_else(|| NotAValue::of(&SET_TAG, text))),
 );

@@ -4,6 +4,7 @@
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
 use super::about::{ARTIST, COPYRIGHT, METADATA, SET_TAG};
+use super::files::{CHROMA_SUBSAMPLING, QUALITY, TIFF_COMPRESSION};
 use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
@@ -14,8 +15,7 @@ use super::tones::{
     BLACK, CONTRAST, CURVE, HIGHLIGHTS as HIGHLIGHTS_TONE, SATURATION, SHADOWS, VIBRANCE, WHITE,
 };
 use super::words::{
-    AUTO, BITS, CHROMA, COMPRESSION, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS,
-    LOOKS, SWITCH, plain,
+    AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
 };
 
 /// Writes what a text means into its place.
@@ -68,42 +68,9 @@ pub const SETTINGS: [Setting; 50] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.bits, one_of(&BITS, text)),
     },
-    Setting {
-        name: "quality",
-        alias: None,
-        noun: "quality",
-        kind: Kind::Number { least: 1.0, most: 100.0, whole: true, unit: "" },
-        default: "92",
-        group: Group::Output,
-        placeholder: "N",
-        help: "Quality of JPEG and AVIF, 1 to 100",
-        changes: Changes::Encoding,
-        set: |to, text| put(&mut to.encode.quality, number(text).map(|n| n as u8)),
-    },
-    Setting {
-        name: "chroma",
-        alias: None,
-        noun: "chroma subsampling",
-        kind: Kind::Words(const { &plain(&CHROMA) }),
-        default: "444",
-        group: Group::Output,
-        placeholder: "",
-        help: "Chroma subsampling of JPEG",
-        changes: Changes::Encoding,
-        set: |to, text| put(&mut to.encode.subsampling, one_of(&CHROMA, text)),
-    },
-    Setting {
-        name: "compression",
-        alias: None,
-        noun: "compression",
-        kind: Kind::Words(const { &plain(&COMPRESSION) }),
-        default: "deflate",
-        group: Group::Output,
-        placeholder: "",
-        help: "Compression of TIFF",
-        changes: Changes::Encoding,
-        set: |to, text| put(&mut to.encode.compression, one_of(&COMPRESSION, text)),
-    },
+    QUALITY,
+    CHROMA_SUBSAMPLING,
+    TIFF_COMPRESSION,
     METADATA,
     ARTIST,
     COPYRIGHT,
