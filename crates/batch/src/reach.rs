@@ -21,7 +21,7 @@ pub(crate) fn developing(opened: &Opened) -> Reach {
         ProfileChoice::Automatic | ProfileChoice::Matrix => None,
     };
     // A DCP in the user's folder is read when it is wanted; profiles of the session, too.
-    let named = named.into_iter().chain(opened.settings.chart.files());
+    let named = named.into_iter().chain(opened.settings.files());
     let profiles = named.chain(ProfileStore::user_folder()).chain(opened.session_profiles());
     let takes_away = opened.settings.overwrite || opened.output.is_renamed();
     let access = if takes_away { Access::Replace } else { Access::Name };

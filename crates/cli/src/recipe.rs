@@ -105,7 +105,7 @@ fn description() -> Value {
                 about["unit"] = unit.into();
             }
             Kind::Text { .. } => about["type"] = "text".into(),
-            Kind::File(words) => {
+            Kind::File(words) | Kind::Path(words) => {
                 about["type"] = "file".into();
                 about["words"] = words.iter().map(|word| json!({ "word": word, "help": "" })).collect();
             }

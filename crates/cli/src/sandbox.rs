@@ -58,7 +58,7 @@ pub(crate) fn named(settings: &Settings) -> impl Iterator<Item = PathBuf> {
         ProfileChoice::File(path) => Some(path.clone()),
         ProfileChoice::Automatic | ProfileChoice::Matrix => None,
     };
-    profile.into_iter().chain(settings.chart.files())
+    profile.into_iter().chain(settings.files())
 }
 
 /// With a name for an output that is open.

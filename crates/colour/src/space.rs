@@ -80,6 +80,13 @@ pub struct RgbSpace {
     pub curve: TransferCurve,
 }
 
+impl Default for RgbSpace {
+    /// sRGB, which holds where nobody names a space.
+    fn default() -> Self {
+        Self::SRGB
+    }
+}
+
 impl RgbSpace {
     /// sRGB, IEC 61966-2-1.
     pub const SRGB: Self = Self {

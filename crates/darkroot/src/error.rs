@@ -7,6 +7,8 @@ use darkroot_calibrate::{CalibrateError, LightSource};
 
 use crate::SettingsError;
 use crate::fault::{ChartError, NeutralError, SpectraError};
+use crate::frames::FrameFault;
+use crate::lut::LutFault;
 use crate::{quoted, shown};
 
 /// Why a file could not be developed or inspected.
@@ -60,6 +62,22 @@ pub enum Error {
         path: PathBuf,
         /// What is wrong with it.
         source: SpectraError,
+    },
+    /// A file of a look-up table is unusable.
+    #[error("{path}: {}", sentence(source), path = shown(path))]
+    Lut {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: LutFault,
+    },
+    /// A dark or flat frame that cannot stand beside the photograph.
+    #[error("{path}: {}", sentence(source), path = shown(path))]
+    Frame {
+        /// The frame, or the folder of frames.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: FrameFault,
     },
     /// Neither a profile file nor a camera with a profile.
     #[error("{}: is neither a profile file nor a camera with a profile", shown(text))]

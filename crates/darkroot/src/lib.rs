@@ -35,6 +35,11 @@ pub use naming::{Job, NamingError, Target, plan_outputs};
 pub mod job;
 pub use job::{Control, Report, Step, develop, develop_into, encode_picture, open_output};
 
+mod frames;
+pub use frames::FrameFault;
+
+pub mod lut;
+
 mod from_chart;
 mod provenance;
 

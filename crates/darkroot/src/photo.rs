@@ -22,9 +22,9 @@ use darkroot_profile::Profile;
 use darkroot_raw::{Decoder, Limits};
 
 use crate::estimate::Estimated;
-use crate::lens;
 use crate::settings::{ChartShot, Engine, ProfileChoice, Settings, SettingsError};
 use crate::store::{ChosenProfile, ProfileStore};
+use crate::{frames, lens, lut};
 
 /// A decoded raw file.
 #[derive(Debug, Clone)]
@@ -32,6 +32,7 @@ pub struct Photo {
     capture: Arc<Capture>,
     /// The camera as far as its matrix tells; made when it is first wanted.
     estimated: Arc<OnceLock<Option<Estimated>>>,
+    lut: lut::Last,
 }
 
 /// Why there is no plan for a photograph.
@@ -41,9 +42,9 @@ pub enum PlanError {
     /// Settings that contradict each other.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The profile that was asked for cannot be used.
+    /// The profile or the table that was asked for cannot be used.
     #[error(transparent)]
-    Profile(#[from] Box<crate::Error>),
+    File(#[from] Box<crate::Error>),
     /// The capture cannot be developed like that.
     #[error(transparent)]
     Develop(#[from] darkroot_develop::Error),
@@ -120,6 +121,20 @@ impl Photo {
         Ok(darkroot_raw::decode_preview(bytes, limits)?.map(Self::from))
     }
 
+    /// The photograph with the dark frames of the settings taken off, and evened out by their flats. Where they name none it
+    /// stays as it is. Jobs on files do this on their own.
+    ///
+    /// # Errors
+    /// Frames that cannot be read, or that are of another camera or size.
+    pub fn with_frames(self, settings: &Settings) -> Result<Self, crate::Error> {
+        frames::apply(self, settings)
+    }
+
+    /// The capture alone; a copy where it is shared.
+    pub(crate) fn into_capture(self) -> Capture {
+        Arc::unwrap_or_clone(self.capture)
+    }
+
     /// What the file says, and its samples.
     pub fn capture(&self) -> &Capture {
         &self.capture
@@ -149,7 +164,8 @@ impl Photo {
         settings: &Settings,
     ) -> Result<Plan, PlanError> {
         let chosen = self.profile(store, settings)?;
-        let recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
+        let mut recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
+        recipe.lut = self.lut.of(settings).map_err(Box::new)?;
         let mut plan = self.plan_with(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), recipe)?;
         if settings.chart.shot != ChartShot::None {
             plan.notes
@@ -227,6 +243,6 @@ impl Photo {
 
 impl From<Capture> for Photo {
     fn from(capture: Capture) -> Self {
-        Self { capture: Arc::new(capture), estimated: Arc::default() }
+        Self { capture: Arc::new(capture), estimated: Arc::default(), lut: lut::Last::default() }
     }
 }

@@ -84,7 +84,7 @@ fn stages(c: &mut Criterion) {
     group.bench_function("exposure", |b| {
         b.iter_batched(planes, |p| exposure::expose(p, 1.5), BatchSize::LargeInput);
     });
-    if let Some(curve) = Curve::of(Look::Neutral, &Tones::default()) {
+    if let Some(curve) = Curve::of(Look::Neutral, &Tones::default(), None) {
         group.bench_function("tone", |b| {
             b.iter_batched(planes, |p| tone::tone(p, &curve), BatchSize::LargeInput);
         });

@@ -60,7 +60,7 @@ fn correction(order: Order) -> Ready {
 }
 
 fn tone_and_gamut() -> Option<Ready> {
-    let curve = Curve::of(Look::Neutral, &Tones::default())?;
+    let curve = Curve::of(Look::Neutral, &Tones::default(), None)?;
     let primaries = Primaries::new(&RgbSpace::SRGB);
     let mut picture = Some(planes::<Scene>());
     Some(Box::new(move || {

@@ -7,7 +7,7 @@ use crate::gamut::Mapping;
 use crate::grid::Grid;
 use crate::plan::Plan;
 use crate::transfer::{self, Sample};
-use crate::{correct, exposure, gamut, highlights, tally, tone};
+use crate::{correct, exposure, gamut, highlights, lut, tally, tone};
 
 /// Pixels that go through the stages together.
 const PIXELS: usize = 2048;
@@ -72,9 +72,13 @@ fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     let scene = correct::correct(exposure::darken(camera, plan.veil), model);
     let scene = exposure::expose(scene, plan.gain);
     let primaries = &plan.primaries;
+    let shown = |scene, curve| {
+        let toned = tone::tone(scene, curve);
+        plan.lut.iter().fold(toned, lut::look_up)
+    };
     match (&plan.curve, plan.gamut) {
-        (Some(curve), Mapping::Mapped) => gamut::fit(tone::tone(scene, curve), primaries),
-        (Some(curve), _) => tally::clip(gamut::unfitted(tone::tone(scene, curve), primaries), &plan.tally),
+        (Some(curve), Mapping::Mapped) => gamut::fit(shown(scene, curve), primaries),
+        (Some(curve), _) => tally::clip(gamut::unfitted(shown(scene, curve), primaries), &plan.tally),
         (None, Mapping::Mapped) => gamut::fit(gamut::untoned(scene, primaries), primaries),
         (None, Mapping::Clipped) => tally::clip(gamut::convert(scene, primaries), &plan.tally),
         (None, Mapping::Kept) => gamut::convert(scene, primaries),

@@ -4,7 +4,7 @@
 //! plan    looks at the whole capture once: white, highlights, exposure
 //! render  cuts the picture into tiles and runs the stages over each, in parallel:
 //!         level -> denoise -> corrections -> balance -> highlights -> lateral -> demosaic -> sharpen
-//!         -> corrections -> geometry -> correct (profile) -> exposure -> tone -> gamut -> transfer
+//!         -> corrections -> geometry -> correct (profile) -> exposure -> tone -> lut -> gamut -> transfer
 //! ```
 //!
 //! A stage is a function over a small picture in its own file; it neither knows nor cares whether that picture
@@ -19,7 +19,7 @@
 pub mod recipe;
 pub use recipe::{
     Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Gamut, Geometry, Highlights, HotPixels, Lens,
-    Look, Output, OutputSpace, Points, PointsError, Recipe, Resize, Tones, Turn,
+    Look, Output, OutputSpace, Overlay, Points, PointsError, Recipe, Resize, Tones, Turn,
 };
 
 pub mod error;
@@ -41,6 +41,9 @@ pub mod tally;
 pub use tally::{Clipped, Tally};
 
 pub mod stage;
+
+// What other frames tell of it.
+pub mod companions;
 
 // What is looked for in the whole frame.
 pub mod frame;
@@ -80,6 +83,7 @@ pub mod gamut;
 mod geometry;
 pub mod highlights;
 pub mod level;
+pub mod lut;
 mod mend;
 pub mod sharpen;
 pub mod tone;

@@ -18,6 +18,7 @@ use crate::geometry::{Geometry, Laid, Lens, lay};
 use crate::highlights::{CLIPPED, Rebuild, Treatment};
 use crate::lateral::Lateral;
 use crate::light::LinearLight;
+use crate::lut;
 use crate::mend::Mends;
 use crate::noise::Noise;
 use crate::recipe::{Bits, Denoise, Exposure, Highlights, HotPixels, Look, OutputSpace, Recipe};
@@ -77,6 +78,8 @@ pub struct Plan {
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
+    /// What is laid over the look.
+    pub(crate) lut: Option<lut::Laid>,
     pub(crate) gamut: Mapping,
     pub(crate) tally: Arc<Tally>,
     colour_model: Option<Model>,
@@ -122,7 +125,8 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         Method::of(layout, recipe.demosaic).ok_or_else(|| Error::Filters { filters: filters(layout) })?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
     // What the camera rendered for display has its look already.
-    let curve = Curve::of(recipe.look, &recipe.tones).filter(|_| !capture.rendered);
+    let overlay = recipe.lut.as_ref();
+    let curve = Curve::of(recipe.look, &recipe.tones, overlay).filter(|_| !capture.rendered);
     let reproduced = recipe.look == Look::Reproduction && !capture.rendered;
     let linear = curve.is_none() && !reproduced;
     let measuring = linear || camera_output;
@@ -179,6 +183,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         colour_model: (!camera_output).then_some(model),
         gamut: Mapping::of(recipe.gamut, linear, reproduced),
         tally: Arc::default(),
+        lut: overlay.filter(|_| curve.is_some()).and_then(lut::Laid::of),
         curve,
         primaries: Primaries::new(&space),
         encoder: Encoder::new(transfer),

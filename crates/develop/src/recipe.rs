@@ -3,10 +3,11 @@
 use darkroot_colour::RgbSpace;
 
 pub use crate::geometry::{Crop, Flip, Geometry, Lens, Resize, Turn};
+pub use crate::lut::Overlay;
 pub use crate::tone::{Points, PointsError, Tones};
 
 /// How a photograph shall be developed.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Recipe {
     /// White of the light.
     pub balance: Balance,
@@ -27,6 +28,8 @@ pub struct Recipe {
     pub look: Look,
     /// What is changed about it.
     pub tones: Tones,
+    /// A table laid over it; `None` for none.
+    pub lut: Option<Overlay>,
     /// What becomes of colours that the output cannot show.
     pub gamut: Gamut,
     /// Which part of the frame.

@@ -14,6 +14,7 @@ use darkroot_photo::{Rgb, Scene, Toned};
 
 use crate::Look;
 use crate::cones::{self, Rows, along_hue, from_rgb, greater, lesser, rows};
+use crate::lut::Overlay;
 use adjust::Table;
 
 mod adjust;
@@ -57,18 +58,22 @@ const BRIGHTEST: f32 = 1e6;
 const DARKEST: f32 = 1e-6;
 
 impl Curve {
-    /// The curve of a look, changed; `None` for those that show light in proportion.
-    pub fn of(look: Look, tones: &Tones) -> Option<Self> {
+    /// The curve of a look, changed, and with a table over it that is a tone curve; `None` for those that show light in
+    /// proportion.
+    pub fn of(look: Look, tones: &Tones, lut: Option<&Overlay>) -> Option<Self> {
+        let lut = lut.filter(|overlay| overlay.lut.is_one_curve());
         // A metered grey is shown so that pictures are as bright as those of cameras (tests/compare/brightness.py).
         let curve = |quarters: u8, shown_grey: f64, chroma: f32| {
             // Solved for f(METERED_GREY) = shown_grey.
             let t = METERED_GREY.powf(f64::from(quarters) / 4.0);
             let k = t * (1.0 - shown_grey) / (shown_grey - t);
             let base = Base { quarters, k: k as f32 };
-            let table = (!tones.keeps_curve()).then(|| {
+            let changed = !tones.keeps_curve() || lut.is_some();
+            let table = changed.then(|| {
                 Table::of(tones, METERED_GREY, |light| {
                     let shown = base.at(light);
-                    tones.curve.map_or(shown, |points| points.light(shown))
+                    let shown = tones.curve.map_or(shown, |points| points.light(shown));
+                    lut.map_or(shown, |overlay| overlay.grey(shown))
                 })
             });
             let to_cones = rows(&from_rgb(&RgbSpace::REC2020));

@@ -11,51 +11,61 @@ const EXPONENTS: i32 = 40;
 /// Segments per octave.
 const SEGMENTS: usize = 256;
 
-/// A transfer curve as a table: 256 straight pieces an octave over 40 octaves, within 3e-6 of the curve.
+/// A rising curve over 0..=1 that begins at 0, as a table: 256 straight pieces an octave over 40 octaves, within 3e-6 of it
+/// where it is a transfer curve or the inverse of one.
+#[derive(Debug, Clone)]
+pub(crate) struct Octaves {
+    /// Value at the start of each piece; one more for the end.
+    knots: Vec<f32>,
+}
+
+impl Octaves {
+    pub(crate) fn of(curve: impl Fn(f64) -> f64 + Sync) -> Self {
+        let count = EXPONENTS as usize * SEGMENTS;
+        let knot = |i: usize| {
+            let (octave, part) = (i / SEGMENTS, i % SEGMENTS);
+            let base = 2f64.powi(octave as i32 - EXPONENTS);
+            curve(base * (1.0 + part as f64 / SEGMENTS as f64)) as f32
+        };
+        Self { knots: (0..count + 1).into_par_iter().with_min_len(1024).map(knot).collect() }
+    }
+
+    /// Value of the curve; what lies outside 0..=1 is cut.
+    #[inline(always)]
+    pub(crate) fn at(&self, v: f32) -> f32 {
+        const FIRST: u32 = (127 - EXPONENTS as u32) << 23;
+        const PIECE_BITS: u32 = 23 - SEGMENTS.trailing_zeros();
+        // `max` makes 0 of a NaN, which `clamp` would keep.
+        let v = f32::min(v.max(0.0), 1.0);
+        let bits = v.to_bits();
+        if bits < FIRST {
+            return v * (self.knots[0] / f32::from_bits(FIRST));
+        }
+        let place = bits - FIRST;
+        let i = (place >> PIECE_BITS) as usize;
+        let part = (place & ((1 << PIECE_BITS) - 1)) as f32 / (1u32 << PIECE_BITS) as f32;
+        let low = self.knots[i];
+        match self.knots.get(i + 1) {
+            Some(high) => low + (high - low) * part,
+            None => low,
+        }
+    }
+}
+
+/// A transfer curve, made ready.
 #[derive(Debug, Clone)]
 pub struct Encoder {
     curve: TransferCurve,
-    /// Value at the start of each piece; one more for the end.
-    knots: Vec<f32>,
+    octaves: Octaves,
     steps: Steps,
 }
 
 impl Encoder {
     /// Prepares a curve.
     pub fn new(curve: TransferCurve) -> Self {
-        let count = EXPONENTS as usize * SEGMENTS;
-        let knots: Vec<f32> = (0..count + 1)
-            .into_par_iter()
-            .with_min_len(1024)
-            .map(|i| {
-                let (octave, part) = (i / SEGMENTS, i % SEGMENTS);
-                let base = 2f64.powi(octave as i32 - EXPONENTS);
-                curve.encode(base * (1.0 + part as f64 / SEGMENTS as f64)) as f32
-            })
-            .collect();
-        let steps = Steps::of(|linear| between(&knots, linear));
-        Self { curve, knots, steps }
-    }
-}
-
-/// Encoded value of linear light of 0..=1, between the knots of a curve; values outside are cut.
-#[inline(always)]
-fn between(knots: &[f32], linear: f32) -> f32 {
-    const FIRST: u32 = (127 - EXPONENTS as u32) << 23;
-    const PIECE_BITS: u32 = 23 - SEGMENTS.trailing_zeros();
-    // `max` makes 0 of a NaN, which `clamp` would keep.
-    let v = f32::min(linear.max(0.0), 1.0);
-    let bits = v.to_bits();
-    if bits < FIRST {
-        return v * (knots[0] / f32::from_bits(FIRST));
-    }
-    let place = bits - FIRST;
-    let i = (place >> PIECE_BITS) as usize;
-    let part = (place & ((1 << PIECE_BITS) - 1)) as f32 / (1u32 << PIECE_BITS) as f32;
-    let low = knots[i];
-    match knots.get(i + 1) {
-        Some(high) => low + (high - low) * part,
-        None => low,
+        let octaves = Octaves::of(|linear| curve.encode(linear));
+        let steps = Steps::of(|linear| octaves.at(linear));
+        Self { curve, octaves, steps }
     }
 }
 
@@ -103,7 +113,7 @@ impl Sample for u16 {
 
     #[inline(always)]
     fn of(linear: f32, encoder: &Encoder) -> Self {
-        (between(&encoder.knots, linear) * 65535.0 + 0.5) as Self
+        (encoder.octaves.at(linear) * 65535.0 + 0.5) as Self
     }
 }
 
@@ -229,7 +239,7 @@ mod tests {
                 let v = (f64::from(i) / 100_000.0).powi(3) as f32;
                 let exact = space.curve.encode(f64::from(v));
                 assert!(
-                    (f64::from(between(&encoder.knots, v)) - exact).abs() < 0.25 / 65535.0,
+                    (f64::from(encoder.octaves.at(v)) - exact).abs() < 0.25 / 65535.0,
                     "{} at {v}",
                     space.name
                 );
@@ -253,7 +263,7 @@ mod tests {
                 let v = (f64::from(i) / 1_000_000.0).powi(3) as f32;
                 assert_eq!(
                     u8::of(v, &encoder),
-                    (between(&encoder.knots, v) * 255.0 + 0.5) as u8,
+                    (encoder.octaves.at(v) * 255.0 + 0.5) as u8,
                     "{} at {v}",
                     space.name
                 );
@@ -267,7 +277,7 @@ mod tests {
         for (v, expected) in
             [(f32::NAN, 0.0), (-1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (7.0, 1.0), (f32::INFINITY, 1.0)]
         {
-            assert!((between(&encoder.knots, v) - expected).abs() < 1e-6, "{v}");
+            assert!((encoder.octaves.at(v) - expected).abs() < 1e-6, "{v}");
             assert_eq!(f32::from(u8::of(v, &encoder)), 255.0 * expected, "{v}");
             assert_eq!(f32::from(u16::of(v, &encoder)), 65535.0 * expected, "{v}");
         }

@@ -16,7 +16,7 @@ use crate::metadata::{About, of_picture};
 use crate::photo::Photo;
 use crate::settings::{ChartShot, Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
-use crate::{Error, Job, from_chart, provenance};
+use crate::{Error, Job, frames, from_chart, lut, provenance};
 
 pub use report::Report;
 use report::{blank_report, colours, far_light};
@@ -83,7 +83,7 @@ fn refuse_existing(job: &Job, settings: &Settings) -> Result<(), Error> {
 }
 
 /// As [`develop()`], with the output open already, and with the bytes of the input from `read`. Nothing else is opened
-/// but the profile that the settings name.
+/// but what the settings name: a profile and [their files](Settings::files).
 ///
 /// # Errors
 /// As [`develop()`].
@@ -99,7 +99,9 @@ pub fn develop_into(
     let (input, output) = (&job.input, &job.output);
     control.step(Step::Decode);
     let format = format_of(output, settings);
-    let recipe = settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
+    let mut recipe =
+        settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
+    recipe.lut = lut::Last::default().of(settings)?;
     let Decoded { photo, told, hash } = decoded(input, read, settings, store, &recipe)?;
 
     control.step(Step::Develop);
@@ -109,7 +111,7 @@ pub fn develop_into(
     let (mut report, metadata, picture) = match settings.engine {
         Engine::Darkroot => {
             let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
-            let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, recipe, told.as_ref())?;
+            let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, &recipe, told.as_ref())?;
             let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
             let dpi = settings.dpi.or(by_chart);
             let mut origin = Vec::new();
@@ -183,7 +185,7 @@ fn decoded(
 ) -> Result<Decoded, Error> {
     let told = from_chart::of_file(settings)?;
     let bytes = read()?;
-    let photo = open(input, &bytes, settings, store)?;
+    let photo = frames::apply(open(input, &bytes, settings, store)?, settings)?;
     let told = match settings.chart.shot {
         ChartShot::Itself => Some(from_chart::of_photo(input, &photo, &settings.chart)?),
         _ => told,
@@ -285,26 +287,29 @@ fn plan(
     photo: &Photo,
     chosen: Option<&ChosenProfile<'_>>,
     settings: &Settings,
-    mut recipe: Recipe,
+    recipe: &Recipe,
     told: Option<&Told>,
 ) -> Result<(Plan, Report), Error> {
+    let mut recipe = recipe.clone();
     let profile = chosen.map(|c| c.profile.as_ref());
     if let Some(told) = told {
         told.check(input, photo.capture())?;
-        recipe.balance = if settings.chart.balance { told.balance(None) } else { recipe.balance };
+        if settings.chart.balance {
+            recipe.balance = told.balance(None);
+        }
     }
     let analysis = photo.analyse_as_asked();
-    let planned = |recipe: Recipe| {
-        let plan = photo.plan_with(&analysis, profile, recipe);
+    let planned = |recipe: &Recipe| {
+        let plan = photo.plan_with(&analysis, profile, recipe.clone());
         plan.map_err(|source| Error::Plan { path: input.to_owned(), source })
     };
-    let mut plan = planned(recipe)?;
+    let mut plan = planned(&recipe)?;
     if let Some(told) = told.filter(|_| settings.chart.balance) {
         // The white tells the light, and that how the greys look in it.
         let light =
             provenance::light_of(settings, profile, &plan).and_then(|name| provenance::by_name(&name));
         recipe.balance = told.balance(light.as_ref());
-        plan = planned(recipe)?;
+        plan = planned(&recipe)?;
     }
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();

@@ -81,7 +81,7 @@ pub(super) const EXPOSURE_FROM_CHART: Setting = Setting {
     name: "exposure-from-chart",
     alias: None,
     noun: "shot of a chart",
-    kind: Kind::File(&["off", AUTO]),
+    kind: Kind::Path(&["off", AUTO]),
     default: "off",
     group: Group::Picture,
     placeholder: "SHOT",

@@ -69,12 +69,18 @@ impl Key {
 
     /// Whether a text names a file, not one of the words that the setting has, too.
     pub fn is_file(self, text: &str) -> bool {
-        self.may_be_file(text) && text::is_file_name(text)
+        match self.setting().kind {
+            Kind::Path(_) => self.may_be_file(text),
+            _ => self.may_be_file(text) && text::is_file_name(text),
+        }
     }
 
     /// Whether a text is the name of a file if there is one of that name.
     pub(crate) fn may_be_file(self, text: &str) -> bool {
-        matches!(self.setting().kind, Kind::File(words) if !text.is_empty() && !words.contains(&text))
+        match self.setting().kind {
+            Kind::File(words) | Kind::Path(words) => !text.is_empty() && !words.contains(&text),
+            _ => false,
+        }
     }
 
     /// Puts what a text means into settings.

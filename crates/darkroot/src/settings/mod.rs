@@ -10,6 +10,7 @@ pub use from_chart::{ChartShot, FromChart};
 
 mod about;
 mod files;
+mod frames;
 mod geometry;
 mod tones;
 mod words;
@@ -29,6 +30,7 @@ pub use spaces::{SPACES, space};
 
 use std::path::PathBuf;
 
+use darkroot_colour::RgbSpace;
 use darkroot_develop::{Bits, Look, OutputSpace, Recipe};
 use darkroot_encode::Format;
 use darkroot_photo::PictureSpace;
@@ -83,6 +85,14 @@ pub struct Settings {
     pub told: Vec<(&'static str, String)>,
     /// How files are written.
     pub encode: darkroot_encode::Options,
+    /// The file of a table that is laid over the look.
+    pub lut: Option<PathBuf>,
+    /// The space in which that takes and gives colours.
+    pub lut_space: RgbSpace,
+    /// A dark frame, or a folder of them.
+    pub dark: Option<PathBuf>,
+    /// A flat frame, or a folder of them.
+    pub flat: Option<PathBuf>,
     /// Which profile.
     pub profile: ProfileChoice,
     /// The light that the colours are computed for, where it is not to follow from the white.
@@ -176,6 +186,12 @@ pub enum SettingsError {
 }
 
 impl Settings {
+    /// Files and folders that are read for these settings beside the photograph and its profile.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let own = [&self.lut, &self.dark, &self.flat].into_iter().flatten().cloned();
+        own.chain(self.chart.files())
+    }
+
     /// The format that outputs get when neither name nor option says: JPEG, or TIFF for reproductions and linear light.
     pub fn default_format(&self) -> Format {
         let measured = matches!(self.recipe.look, Look::Reproduction | Look::Linear);
@@ -187,9 +203,11 @@ impl Settings {
     /// # Errors
     /// Settings that contradict each other or the format.
     pub fn resolve(&self, format: Format) -> Result<Recipe, SettingsError> {
-        let mut recipe = self.recipe;
+        let mut recipe = self.recipe.clone();
+        // A flat frame shows the shading of the lens.
+        recipe.geometry.keep_vignetting |= self.flat.is_some();
         let linear = recipe.look == Look::Linear;
-        let srgb = darkroot_colour::RgbSpace::SRGB;
+        let srgb = RgbSpace::SRGB;
         recipe.output.space = self.space.unwrap_or(OutputSpace::Rgb(match format {
             Format::Exr => srgb.linear(),
             _ if linear => srgb.linear(),
@@ -206,7 +224,7 @@ impl Settings {
         if camera && (bits != 32 || !matches!(format, Format::Tiff | Format::Exr)) {
             return Err(SettingsError::CameraNeedsFloat);
         }
-        check_tones(&recipe, linear || camera)?;
+        check_tones(self, &recipe, linear || camera)?;
         from_chart::check(self, camera)?;
         if linear && bits == 8 {
             return Err(SettingsError::LinearInEightBits { format: format.name() });
@@ -236,8 +254,8 @@ impl Settings {
 }
 
 /// Linear light has no look that could be changed.
-fn check_tones(recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
-    let settings = tones::changed(&recipe.tones);
+fn check_tones(settings: &Settings, recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
+    let settings = tones::changed(settings);
     match recipe.look {
         _ if settings.is_empty() => Ok(()),
         _ if linear => Err(SettingsError::TonesOnLinear { settings }),
@@ -253,18 +271,20 @@ fn check_preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsErr
         ("space", recipe.output.space == OutputSpace::Camera),
         ("profile", matches!(settings.profile, ProfileChoice::File(_))),
         ("engine", settings.engine == Engine::Imagepipe),
+        ("dark", settings.dark.is_some()),
+        ("flat", settings.flat.is_some()),
     ];
-    let mut settings: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    let mut asked: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
     // The camera's rendering has its own curve, and no look is laid over it.
-    settings.extend(tones::changed(&recipe.tones));
-    if settings.is_empty() { Ok(()) } else { Err(SettingsError::Preview { settings }) }
+    asked.extend(tones::changed(settings));
+    if asked.is_empty() { Ok(()) } else { Err(SettingsError::Preview { settings: asked }) }
 }
 
 fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
     let fixed = Recipe::default();
     let heeded = [
         ("profile", settings.profile == ProfileChoice::Automatic),
-        ("space", recipe.output.space == OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB)),
+        ("space", recipe.output.space == OutputSpace::Rgb(RgbSpace::SRGB)),
         ("bits", recipe.output.bits != Bits::Float),
         ("look", recipe.look == fixed.look),
         ("gamut", recipe.gamut == fixed.gamut),
@@ -278,6 +298,9 @@ fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsE
         ("demosaic", recipe.demosaic == fixed.demosaic),
         ("crop", recipe.crop == fixed.crop),
         ("contrast, saturation and their like", recipe.tones == fixed.tones),
+        ("lut", settings.lut.is_none()),
+        ("dark", settings.dark.is_none()),
+        ("flat", settings.flat.is_none()),
         ("rotate, straighten, lens, resize and their like", recipe.geometry == fixed.geometry),
     ];
     let unheeded: Vec<&str> = heeded.iter().filter(|(_, fits)| !fits).map(|(name, _)| *name).collect();
@@ -314,7 +337,7 @@ mod tests {
     #[test]
     fn the_linear_look_is_linear_srgb_in_16_bits_unless_told_otherwise() {
         let recipe = settings(Look::Linear, None, None).resolve(Format::Tiff).unwrap();
-        assert_eq!(recipe.output.space, OutputSpace::Rgb(darkroot_colour::RgbSpace::SRGB.linear()));
+        assert_eq!(recipe.output.space, OutputSpace::Rgb(RgbSpace::SRGB.linear()));
         assert_eq!(recipe.output.bits, Bits::Sixteen);
     }
 

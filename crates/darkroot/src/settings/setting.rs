@@ -53,8 +53,10 @@ pub enum Kind {
         /// Values to show a person who wrote something else.
         example: &'static str,
     },
-    /// A file, or one of some words.
+    /// A file, the name of something, or one of some words.
     File(&'static [&'static str]),
+    /// A file (or, where the setting says so, a folder), or one of some words.
+    Path(&'static [&'static str]),
 }
 
 /// Settings that belong together.

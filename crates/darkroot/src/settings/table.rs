@@ -5,6 +5,7 @@
 
 use super::about::{ARTIST, COPYRIGHT, METADATA, SET_TAG};
 use super::files::{CHROMA_SUBSAMPLING, QUALITY, TIFF_COMPRESSION};
+use super::frames::{DARK, FLAT};
 use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
@@ -12,7 +13,8 @@ use super::geometry::{
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{
-    BLACK, CONTRAST, CURVE, HIGHLIGHTS as HIGHLIGHTS_TONE, SATURATION, SHADOWS, VIBRANCE, WHITE,
+    BLACK, CONTRAST, CURVE, HIGHLIGHTS as HIGHLIGHTS_TONE, LUT, LUT_SPACE, SATURATION, SHADOWS, VIBRANCE,
+    WHITE,
 };
 use super::words::{
     AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
@@ -25,7 +27,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 50] = [
+pub const SETTINGS: [Setting; 54] = [
     Setting {
         name: "format",
         alias: None,
@@ -154,6 +156,10 @@ pub const SETTINGS: [Setting; 50] = [
     CURVE,
     SATURATION,
     VIBRANCE,
+    LUT,
+    LUT_SPACE,
+    DARK,
+    FLAT,
     Setting {
         name: "highlights",
         alias: None,

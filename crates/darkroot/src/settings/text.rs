@@ -1,12 +1,14 @@
 //! What the texts of settings mean, for the command line and for files alike.
 
+use std::path::PathBuf;
+
 use darkroot_develop::{Balance, OutputSpace};
 use darkroot_raw::Decoder;
 
 use super::ProfileChoice;
 use super::setting::{Kind, Setting, Word};
 use super::spaces::{self, SPACES};
-use super::words::{AUTO, DECODERS, SWITCH};
+use super::words::{AUTO, DECODERS, OFF, SWITCH};
 use crate::light::LightSource;
 
 /// A text that is no value. The message says what is.
@@ -53,6 +55,7 @@ impl Setting {
                 format!("a file, the name of a camera with a profile, {}", words.join(" or "))
             }
             Kind::File(words) => format!("a file, a name, {}", words.join(" or ")),
+            Kind::Path(words) => format!("a file, {}", words.join(" or ")),
         }
     }
 
@@ -66,6 +69,7 @@ impl Setting {
             Kind::Number { .. } => "a number such as 0.5".to_owned(),
             Kind::Text { example, .. } => format!("a text in quotes such as {example}"),
             Kind::File(_) => "a text in quotes such as \"camera.toml\"".to_owned(),
+            Kind::Path(_) => "a text in quotes such as \"frames/one.dng\"".to_owned(),
             Kind::Words(words) => match numbers(words) {
                 Some(number) => format!("a number such as {number}"),
                 None => {
@@ -195,6 +199,15 @@ pub(super) fn light(text: &str) -> Result<Option<LightSource>, NotAValue> {
     }
     let named = LightSource::by_name(text);
     named.map(Some).ok_or_else(|| NotAValue::plain(text, "illuminant", crate::light::known_names()))
+}
+
+/// A path of a setting; none for the word that says so.
+pub(super) fn path(text: &str, setting: &Setting) -> Result<Option<PathBuf>, NotAValue> {
+    match text {
+        "" => Err(NotAValue::of(setting, text)),
+        OFF => Ok(None),
+        path => Ok(Some(path.into())),
+    }
 }
 
 /// Numbers with commas between them.

@@ -1,11 +1,13 @@
 //! Settings of what is changed about a look: their rows of the table.
 
-use darkroot_develop::{Points, Tones};
+use darkroot_develop::{OutputSpace, Points, Tones};
 
 use super::Settings;
 use super::setting::{Changes, Group, Kind, Setting};
+use super::spaces::space;
 use super::table::put;
-use super::text::{NotAValue, number};
+use super::text::{NotAValue, number, path};
+use super::words::OFF;
 
 const fn row(
     name: &'static str,
@@ -118,8 +120,45 @@ pub(super) const VIBRANCE: Setting = row(
     |to, text| put(&mut to.recipe.tones.vibrance, number(text).map(|n| n as f32)),
 );
 
+pub(super) const LUT: Setting = Setting {
+    name: "lut",
+    alias: None,
+    noun: "look-up table",
+    kind: Kind::Path(&[OFF]),
+    default: OFF,
+    group: Group::Picture,
+    placeholder: "FILE",
+    help: "Table laid over the look: a .cube file of one or three dimensions or a CLF file, or off",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.lut, path(text, &LUT)),
+};
+
+pub(super) const LUT_SPACE: Setting = Setting {
+    name: "lut-space",
+    alias: None,
+    noun: "colour space",
+    kind: Kind::Text {
+        form: "srgb, display-p3, adobe-rgb, prophoto, rec2020, ecirgb-v2, each also with -linear, or aces2065-1",
+        example: "\"rec2020\"",
+    },
+    default: "srgb",
+    group: Group::Picture,
+    placeholder: "SPACE",
+    help: "Colour space that the table of `--lut` takes and gives: srgb, display-p3, adobe-rgb, prophoto, rec2020, ecirgb-v2, \
+           each also with -linear, or aces2065-1",
+    changes: Changes::Picture,
+    set: |to, text| match space(text) {
+        Some(OutputSpace::Rgb(space)) => {
+            to.lut_space = space;
+            Ok(())
+        }
+        _ => Err(NotAValue::of(&LUT_SPACE, text)),
+    },
+};
+
 /// Names of the settings that change something.
-pub(super) fn changed(tones: &Tones) -> Vec<&'static str> {
+pub(super) fn changed(settings: &Settings) -> Vec<&'static str> {
+    let tones = &settings.recipe.tones;
     let fixed = Tones::default();
     let pairs = [
         (CONTRAST.name, tones.contrast, fixed.contrast),
@@ -132,5 +171,5 @@ pub(super) fn changed(tones: &Tones) -> Vec<&'static str> {
     ];
     let by_amount =
         pairs.iter().filter(|(_, asked, fixed)| (asked - fixed).abs() > 0.0).map(|(name, ..)| *name);
-    by_amount.chain(tones.curve.map(|_| CURVE.name)).collect()
+    by_amount.chain(tones.curve.map(|_| CURVE.name)).chain(settings.lut.as_ref().map(|_| LUT.name)).collect()
 }

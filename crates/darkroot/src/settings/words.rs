@@ -28,6 +28,7 @@ pub(super) const fn plain<T, const N: usize>(words: &[Word<T>; N]) -> [Word<()>;
 }
 
 pub(super) const AUTO: &str = "auto";
+pub(super) const OFF: &str = "off";
 
 pub(super) const FORMATS: [Word<Option<Format>>; 8] = [
     word(AUTO, None, "By the output's ending, else JPEG, or TIFF for reproductions and linear light"),

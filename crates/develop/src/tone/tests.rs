@@ -7,12 +7,12 @@ const LOOKS: [Look; 3] = [Look::Neutral, Look::Vivid, Look::Flat];
 
 /// Linear sRGB of colours of a scene in linear sRGB, toned.
 fn shown(scene: &[[f64; 3]], look: Look) -> Vec<[f64; 3]> {
-    by_curve(scene, &Curve::of(look, &Tones::default()).unwrap())
+    by_curve(scene, &Curve::of(look, &Tones::default(), None).unwrap())
 }
 
 /// The same in the neutral look, changed.
 fn shown_with(scene: &[[f64; 3]], tones: &Tones) -> Vec<[f64; 3]> {
-    by_curve(scene, &Curve::of(Look::Neutral, tones).unwrap())
+    by_curve(scene, &Curve::of(Look::Neutral, tones, None).unwrap())
 }
 
 fn by_curve(scene: &[[f64; 3]], curve: &Curve) -> Vec<[f64; 3]> {
@@ -59,7 +59,7 @@ fn stops(colour: [f64; 3], from: f64, to: f64) -> Vec<[f64; 3]> {
 #[test]
 fn every_curve_rises_from_black_to_white() {
     for look in LOOKS {
-        let curve = Curve::of(look, &Tones::default()).unwrap();
+        let curve = Curve::of(look, &Tones::default(), None).unwrap();
         let mut previous = curve.at(0.0);
         assert!(previous.abs() < 1e-9, "{look:?}");
         for i in 1..=2000 {
@@ -75,7 +75,7 @@ fn every_curve_rises_from_black_to_white() {
 
 #[test]
 fn contrast_grows_from_flat_to_vivid() {
-    let shadows = |look| Curve::of(look, &Tones::default()).unwrap().at(0.02);
+    let shadows = |look| Curve::of(look, &Tones::default(), None).unwrap().at(0.02);
     assert!(shadows(Look::Flat) > shadows(Look::Neutral) && shadows(Look::Neutral) > shadows(Look::Vivid));
 }
 
@@ -156,14 +156,14 @@ fn grey_stays_grey_and_what_is_no_colour_harms_nothing() {
     for look in LOOKS {
         for v in inputs {
             let picture = Rgb::from_planes(Size { width: 1, height: 1 }, v.map(|v| vec![v])).unwrap();
-            let toned = tone(picture, &Curve::of(look, &Tones::default()).unwrap()).at(0, 0);
-            let wanted = Curve::of(look, &Tones::default()).unwrap().at(lesser(v[0], BRIGHTEST));
+            let toned = tone(picture, &Curve::of(look, &Tones::default(), None).unwrap()).at(0, 0);
+            let wanted = Curve::of(look, &Tones::default(), None).unwrap().at(lesser(v[0], BRIGHTEST));
             assert!(toned.iter().all(|t| (t - wanted).abs() < 2e-6), "{look:?} {v:?}: {toned:?}");
         }
         for v in [[f32::INFINITY, 0.0, 0.1], [0.1, f32::NAN, 0.1], [-1.0, f32::MAX, 0.0], [1e-30, 0.0, 1e-20]]
         {
             let picture = Rgb::from_planes(Size { width: 1, height: 1 }, v.map(|v| vec![v])).unwrap();
-            let toned = tone(picture, &Curve::of(look, &Tones::default()).unwrap()).at(0, 0);
+            let toned = tone(picture, &Curve::of(look, &Tones::default(), None).unwrap()).at(0, 0);
             assert!(toned.iter().all(|t| t.is_finite()), "{look:?} {v:?}: {toned:?}");
         }
     }
@@ -179,7 +179,7 @@ fn a_changed_curve_rises_from_black_to_white_too() {
             {
                 let tones = Tones { contrast, shadows, highlights, black, white, ..Tones::default() };
                 for look in LOOKS {
-                    let curve = Curve::of(look, &tones).unwrap();
+                    let curve = Curve::of(look, &tones, None).unwrap();
                     let mut previous = curve.at(0.0);
                     assert!(previous.abs() < 1e-9);
                     for i in 1..4000 {
@@ -196,8 +196,8 @@ fn a_changed_curve_rises_from_black_to_white_too() {
 #[test]
 fn the_table_is_the_curve_where_nothing_is_changed_and_zones_move_by_the_stops_asked_for() {
     for look in LOOKS {
-        let plain = Curve::of(look, &Tones::default()).unwrap();
-        let hardly = Curve::of(look, &Tones { contrast: 1e-9, ..Tones::default() }).unwrap();
+        let plain = Curve::of(look, &Tones::default(), None).unwrap();
+        let hardly = Curve::of(look, &Tones { contrast: 1e-9, ..Tones::default() }, None).unwrap();
         for i in 0..2000 {
             let light = (f64::from(i) * 0.015 - 20.0).exp2() as f32;
             let (one, other) = (plain.at(light), hardly.at(light));
@@ -215,7 +215,7 @@ fn the_table_is_the_curve_where_nothing_is_changed_and_zones_move_by_the_stops_a
             (Tones { black: 1.0, ..Tones::default() }, -7.5, 1.0),
             (Tones { white: 0.5, ..Tones::default() }, 3.0, 0.5),
         ] {
-            let changed = Curve::of(look, &tones).unwrap().at(at(stops));
+            let changed = Curve::of(look, &tones, None).unwrap().at(at(stops));
             let wanted = plain.at(at(stops + moved));
             assert!((changed / wanted - 1.0).abs() < 2e-3, "{look:?} {tones:?}: {changed} {wanted}");
         }
@@ -227,8 +227,8 @@ fn a_curve_by_points_is_what_the_look_shows_in_the_lightness_asked_for() {
     let lightness = |shown: f32| 100.0 * darkroot_colour::TransferCurve::LStar.encode(f64::from(shown));
     let points = Points::new(&[[0.0, 8.0], [30.0, 20.0], [70.0, 80.0]]).unwrap();
     for look in LOOKS {
-        let plain = Curve::of(look, &Tones::default()).unwrap();
-        let curve = Curve::of(look, &Tones { curve: Some(points), ..Tones::default() }).unwrap();
+        let plain = Curve::of(look, &Tones::default(), None).unwrap();
+        let curve = Curve::of(look, &Tones { curve: Some(points), ..Tones::default() }, None).unwrap();
         assert!((lightness(curve.at(0.0)) - 8.0).abs() < 1e-3);
         let mut previous = 0.0;
         for i in 0..4000 {
