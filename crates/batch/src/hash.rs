@@ -6,14 +6,14 @@ use std::path::Path;
 use darkroot_develop::OutputSpace;
 use sha2::{Digest, Sha256};
 
-use darkroot::{Engine, Error, ProfileChoice, ProfileStore, Settings, files};
+use darkroot::{Engine, Error, ProfileChoice, ProfileStore, Settings};
 
 /// Bytes that are read at once.
 const BLOCK: usize = 1 << 20;
 
 /// Of bytes.
 pub(crate) fn bytes(bytes: &[u8]) -> String {
-    files::sha256(bytes)
+    darkroot::files::sha256(bytes)
 }
 
 /// Of a text.
@@ -23,7 +23,7 @@ pub(crate) fn text(text: &str) -> String {
 
 /// Of a file's content.
 pub(crate) fn file(path: &Path) -> io::Result<String> {
-    content(&mut files::open(path)?)
+    content(&mut darkroot::files::open(path)?)
 }
 
 /// Of what an open file holds from its place on.
@@ -36,6 +36,18 @@ pub(crate) fn content(file: &mut std::fs::File) -> io::Result<String> {
             n => digest.update(&block[..n]),
         }
     }
+}
+
+/// Of the files that settings name beside the profile, and of the frames in folders that they name; empty where there are none.
+pub(crate) fn files(settings: &Settings) -> Result<String, Error> {
+    let mut lines = String::new();
+    for named in settings.files() {
+        for path in darkroot::frames::named(&named)? {
+            lines += &self::file(path.as_path()).map_err(|e| Error::read(&path, e))?;
+            lines.push('\n');
+        }
+    }
+    Ok(if lines.is_empty() { lines } else { text(&lines) })
 }
 
 /// Of the profile that gives a camera's colours under these settings; empty where none does.

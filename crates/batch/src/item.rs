@@ -75,6 +75,8 @@ pub enum Why {
     SettingsChanged,
     /// The profile is another than then.
     ProfileChanged,
+    /// A table, a frame or a shot of a chart that the settings name is another than then.
+    FileChanged,
     /// The output is gone.
     OutputMissing,
     /// The output was damaged on the disk: another content at the same time of change.

@@ -274,6 +274,7 @@ mod tests {
             settings: "cd".into(),
             camera: CameraNames::default(),
             profile: String::new(),
+            files: String::new(),
             written: identity,
             width: 6,
             height: 4,

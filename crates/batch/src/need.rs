@@ -1,5 +1,7 @@
 //! How much memory a file takes.
 
+use std::path::PathBuf;
+
 use darkroot_encode::Format;
 
 use darkroot::settings::{Engine, Settings};
@@ -38,7 +40,13 @@ pub(crate) fn develop(
     let (samples, float) = if settings.from_preview { (3 * pixels, false) } else { (samples, float) };
     // flashraw gives 16-bit counts; floating point is kept as such.
     let counts = samples * if float { 4 } else { 2 };
-    let decode = file + 2 * counts;
+    // Dark frames, then flats, beside the photograph; one more while it is decoded.
+    let frames = |path: &Option<PathBuf>| {
+        let named = path.as_ref().and_then(|path| darkroot::frames::named(path).ok());
+        named.map_or(0, |frames| (frames.len() as u64 + 1) * counts + file)
+    };
+    let beside = frames(&settings.dark).max(frames(&settings.flat));
+    let decode = file + 2 * counts + beside;
     // Noise of the coarse scales, and what it is looked for in.
     let noise = 2 * pixels;
     if format.takes_bands() && settings.engine == Engine::Darkroot {

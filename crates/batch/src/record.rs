@@ -19,6 +19,9 @@ pub struct Done {
     pub camera: CameraNames,
     /// SHA-256 of the profile that gave the colours; empty for the file's own matrices.
     pub profile: String,
+    /// SHA-256 of the other files that the settings name (tables, frames, shots of charts); empty where there are none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub files: String,
     /// What the output is.
     pub written: Identity,
     /// Width of the picture in pixels.

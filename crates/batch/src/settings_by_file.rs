@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use darkroot::naming::Target;
+use darkroot::Key;
 use darkroot::recipe::Layers;
 
 use super::find::Source;
@@ -31,13 +32,21 @@ impl SettingsByFile {
         settings.format = Some(format);
         let texts = effective.texts();
         let mut canonical = format!("format={}\n", format.extension());
+        let mut places = String::new();
         for (name, text) in &texts {
-            let file = name == "profile" && text != "auto" && text != "matrix";
+            // What a file says counts, not where it lies; the name of a camera stands for its profile.
+            let file = match Key::from_name(name) {
+                Some(Key::PROFILE) => text != "auto" && text != "matrix",
+                Some(key) => key.is_file(text),
+                None => false,
+            };
+            if file {
+                places += &format!("{name}={text}\n");
+            }
             let text = if file { "(a file)" } else { text };
             canonical += &format!("{name}={text}\n");
         }
-        let place = texts.get("profile").cloned().unwrap_or_default();
-        let kept = self.kept.entry(canonical.clone() + &place);
+        let kept = self.kept.entry(canonical.clone() + &places);
         if let std::collections::hash_map::Entry::Occupied(kept) = kept {
             return Ok(Arc::clone(kept.get()));
         }

@@ -13,10 +13,11 @@ use super::hash;
 use super::history::Known;
 use super::item::{Item, PlanOptions, State, Why};
 
-/// Hashes of profiles, each taken once.
+/// Hashes of profiles and of other files that settings name, each taken once.
 pub(crate) struct Profiles<'a> {
     store: &'a ProfileStore,
     kept: std::sync::Mutex<HashMap<(Wanted, CameraNames), String>>,
+    files: std::sync::Mutex<HashMap<Vec<PathBuf>, String>>,
 }
 
 /// What the settings say of the profile.
@@ -45,7 +46,7 @@ impl Wanted {
 
 impl<'a> Profiles<'a> {
     pub(crate) fn of(store: &'a ProfileStore) -> Self {
-        Self { store, kept: std::sync::Mutex::default() }
+        Self { store, kept: std::sync::Mutex::default(), files: std::sync::Mutex::default() }
     }
 
     /// Hash of the profile that a camera would get now; `None` when it cannot be read.
@@ -60,6 +61,19 @@ impl<'a> Profiles<'a> {
             return Some(hash.clone());
         }
         let hash = hash::profile(&settings, &camera.into(), self.store).ok()?;
+        kept.insert(key, hash.clone());
+        Some(hash)
+    }
+
+    /// Hash of the other files that the settings name, as they are now; `None` when one cannot be read.
+    fn files_now(&self, item: &Item) -> Option<String> {
+        let settings = &item.prepared.settings;
+        let key: Vec<PathBuf> = settings.files().collect();
+        let mut kept = self.files.lock().ok()?;
+        if let Some(hash) = kept.get(&key) {
+            return Some(hash.clone());
+        }
+        let hash = hash::files(settings).ok()?;
         kept.insert(key, hash.clone());
         Some(hash)
     }
@@ -95,6 +109,8 @@ pub(crate) fn state(
         Some(Why::SettingsChanged)
     } else if profiles.now(item, &done.camera).is_none_or(|hash| hash != done.profile) {
         Some(Why::ProfileChanged)
+    } else if profiles.files_now(item).is_none_or(|hash| hash != done.files) {
+        Some(Why::FileChanged)
     } else {
         known.failed.as_ref().map(|_| Why::FailedBefore)
     };

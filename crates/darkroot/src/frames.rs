@@ -120,10 +120,7 @@ fn unlike(dark: &Capture, photo: &Capture) -> Option<String> {
 
 /// The frames of a file or a folder, each of which belongs to the photograph.
 fn read(path: &Path, photo: &Capture, settings: &Settings) -> Result<Vec<Capture>, Error> {
-    if !path.is_dir() {
-        return Ok(vec![frame(path, photo, settings)?]);
-    }
-    let paths = inside(path)?;
+    let paths = named(path)?;
     if paths.len() > MOST {
         return Err(Error::frame(path, FrameFault::TooMany { count: paths.len() }));
     }
@@ -132,8 +129,16 @@ fn read(path: &Path, photo: &Capture, settings: &Settings) -> Result<Vec<Capture
     if frames.is_empty() { Err(Error::frame(path, FrameFault::NoFrames)) } else { Ok(frames) }
 }
 
-/// Raw files of a folder, by name: what is hidden, a setting or a finished picture is none.
-fn inside(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+/// The frames that a path stands for: a file for itself, a folder for its files by name, but for what is hidden, a setting or a
+/// finished picture.
+///
+/// # Errors
+/// A folder that cannot be read.
+pub fn named(path: &Path) -> Result<Vec<PathBuf>, Error> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let folder = path;
     const OTHERS: [&str; 8] = ["toml", "xmp", "txt", "jpg", "jpeg", "png", "json", "html"];
     let entries = std::fs::read_dir(folder).map_err(|e| Error::read(folder, e))?;
     let mut paths: Vec<PathBuf> = entries

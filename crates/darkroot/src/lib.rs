@@ -35,7 +35,7 @@ pub use naming::{Job, NamingError, Target, plan_outputs};
 pub mod job;
 pub use job::{Control, Report, Step, develop, develop_into, encode_picture, open_output};
 
-mod frames;
+pub mod frames;
 pub use frames::FrameFault;
 
 pub mod lut;

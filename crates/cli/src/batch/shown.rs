@@ -242,6 +242,7 @@ fn reason(why: Why) -> &'static str {
         Why::InputChanged => "the input changed",
         Why::SettingsChanged => "the settings changed",
         Why::ProfileChanged => "the profile changed",
+        Why::FileChanged => "a file that the settings name changed",
         Why::OutputMissing => "the output is missing",
         Why::OutputDamaged => "the output is damaged",
         Why::Asked => "again, as asked",

@@ -14,6 +14,8 @@ pub struct Key(usize);
 impl Key {
     /// Format of the outputs, which an output's name can say, too.
     pub const FORMAT: Self = Self::named("format");
+    /// Which profile.
+    pub const PROFILE: Self = Self::named("profile");
     /// The setting of what pictures say of themselves.
     pub const METADATA: Self = Self::named("metadata");
 
