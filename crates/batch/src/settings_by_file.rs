@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use darkroot::naming::Target;
 use darkroot::Key;
+use darkroot::naming::Target;
 use darkroot::recipe::Layers;
 
 use super::find::Source;

@@ -99,7 +99,9 @@ fn option(key: Key) -> Arg {
             let text = darkroot::light::without_file(text).map_err(|fault| fault.to_string())?;
             key.checked(&text).map_err(|fault| fault.to_string())
         }),
-        Kind::Text { .. } | Kind::File(_) | Kind::Path(_) => option.value_parser(move |text: &str| key.checked(text)),
+        Kind::Text { .. } | Kind::File(_) | Kind::Path(_) => {
+            option.value_parser(move |text: &str| key.checked(text))
+        }
     }
 }
 
