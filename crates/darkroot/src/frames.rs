@@ -68,6 +68,7 @@ pub(crate) fn apply(photo: Photo, settings: &Settings) -> Result<Photo, Error> {
     if settings.dark.is_none() && settings.flat.is_none() {
         return Ok(photo);
     }
+    let rendered = photo.rendered.clone();
     let mut capture = photo.into_capture();
     if let Some(path) = &settings.dark {
         let frames = read(path, &capture, settings)?;
@@ -91,7 +92,7 @@ pub(crate) fn apply(photo: Photo, settings: &Settings) -> Result<Photo, Error> {
         companions::even_out(&mut capture, &frames).map_err(|fault| Error::frame(path, fault))?;
         capture.notes.push(format!("evened out by {}", counted(frames.len(), "flat frame")));
     }
-    Ok(Photo::from(capture))
+    Ok(Photo { rendered, ..Photo::from(capture) })
 }
 
 fn counted(n: usize, what: &str) -> String {

@@ -16,8 +16,9 @@
 use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
-use darkroot_develop::{Analysis, Balance, CameraMatrix, Lens, Plan, Recipe, Whites};
-use darkroot_photo::{Capture, Layout};
+use darkroot_develop::camera_look::{self, CameraLook, NoCameraLook};
+use darkroot_develop::{Analysis, Balance, CameraMatrix, Lens, Look, Plan, Recipe, Whites};
+use darkroot_photo::{Capture, Layout, Picture};
 use darkroot_profile::Profile;
 use darkroot_raw::{Decoder, Limits};
 
@@ -33,6 +34,8 @@ pub struct Photo {
     /// The camera as far as its matrix tells; made when it is first wanted.
     estimated: Arc<OnceLock<Option<Estimated>>>,
     lut: lut::Last,
+    /// A small picture of what the camera rendered, where that was asked for.
+    pub(crate) rendered: Option<Arc<Picture>>,
 }
 
 /// Why there is no plan for a photograph.
@@ -77,7 +80,11 @@ impl Photo {
         store: &ProfileStore,
         settings: &Settings,
     ) -> Result<Self, darkroot_raw::Error> {
-        let open = || Self::open_with(bytes, settings.decoder, &settings.limits);
+        let open = || {
+            let photo = Self::open_with(bytes, settings.decoder, &settings.limits)?;
+            let is_asked = settings.recipe.look == Look::Camera;
+            Ok(if is_asked { photo.with_preview(bytes, &settings.limits) } else { photo })
+        };
         if settings.profile != ProfileChoice::Automatic || settings.engine != Engine::Darkroot {
             return open();
         }
@@ -119,6 +126,15 @@ impl Photo {
     /// As [`Photo::open`].
     pub fn open_preview(bytes: &[u8], limits: &Limits) -> Result<Option<Self>, darkroot_raw::Error> {
         Ok(darkroot_raw::decode_preview(bytes, limits)?.map(Self::from))
+    }
+
+    /// The photograph with what the camera rendered of it, for [`Look::Camera`]; `bytes` are those of the file. Without a preview
+    /// that can be decoded it stays as it is.
+    #[must_use]
+    pub fn with_preview(self, bytes: &[u8], limits: &Limits) -> Self {
+        let small = |preview: Self| camera_look::small(preview.capture).ok().map(Arc::new);
+        let rendered = Self::open_preview(bytes, limits).ok().flatten().and_then(small);
+        Self { rendered, ..self }
     }
 
     /// The photograph with the dark frames of the settings taken off, and evened out by their flats. Where they name none it
@@ -188,9 +204,36 @@ impl Photo {
         let asked = recipe.geometry.lens == Lens::Lensfun && !self.capture.rendered;
         let (known, note) = asked.then(|| lens::known(&self.capture)).flatten().unzip();
         recipe.geometry.known = known.flatten();
+        let look = match recipe.look {
+            Look::Camera if !self.capture.rendered => Some(self.camera_look(analysis, profile)?),
+            _ => None,
+        };
+        if let Some(look) = &look {
+            recipe = camera_look::with(look, recipe);
+        }
         let mut plan = darkroot_develop::plan(analysis, profile, &recipe)?;
         plan.notes.extend(note);
+        plan.notes.extend(look.map(|look| {
+            format!(
+                "the look is that of the embedded preview, as {} would make it (median difference {:.1} L*)",
+                look.words(),
+                look.left
+            )
+        }));
         Ok(plan)
+    }
+
+    /// The look that the camera gave the photograph, by the preview that it was [opened with](Self::with_preview).
+    ///
+    /// # Errors
+    /// No preview, one that tells of no look, or a photograph that cannot be developed.
+    pub fn camera_look(
+        &self,
+        analysis: &Analysis,
+        profile: Option<&Profile>,
+    ) -> Result<CameraLook, darkroot_develop::Error> {
+        let rendered = self.rendered.as_ref().ok_or(NoCameraLook::NoPreview)?;
+        camera_look::fit(analysis, profile, rendered)
     }
 
     /// The profile that gives the colours, with the place it is from: where the store has none for the camera, what its
@@ -243,6 +286,11 @@ impl Photo {
 
 impl From<Capture> for Photo {
     fn from(capture: Capture) -> Self {
-        Self { capture: Arc::new(capture), estimated: Arc::default(), lut: lut::Last::default() }
+        Self {
+            capture: Arc::new(capture),
+            estimated: Arc::default(),
+            lut: lut::Last::default(),
+            rendered: None,
+        }
     }
 }

@@ -4,6 +4,8 @@ use std::fmt;
 
 use darkroot_photo::Size;
 
+use crate::camera_look::NoCameraLook;
+
 /// What does not fit. Each message completes "FILE: ".
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -47,6 +49,9 @@ pub enum Error {
         /// Size of the picture.
         size: Size,
     },
+    /// The camera's own look cannot be told.
+    #[error("{0}; choose another look")]
+    CameraLook(#[from] NoCameraLook),
     /// A frame that cannot be.
     #[error("{fault}; the picture has {width} x {height} pixels", width = size.width, height = size.height)]
     Geometry {

@@ -40,6 +40,8 @@ pub use view::{Cancel, Cancelled, Scale, View};
 pub mod tally;
 pub use tally::{Clipped, Tally};
 
+pub mod camera_look;
+
 pub mod stage;
 
 // What other frames tell of it.

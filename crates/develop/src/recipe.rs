@@ -139,6 +139,9 @@ pub enum Look {
     Vivid,
     /// Low contrast, for further editing.
     Flat,
+    /// As the camera rendered it: neutral with a curve and a factor on chroma that are fitted to the embedded preview
+    /// ([`camera_look`](crate::camera_look)). Without that, neutral.
+    Camera,
     /// Colorimetric: light in proportion, colours as measured, no tone curve, no baseline exposure; neither denoised nor
     /// sharpened unless asked. What an original is reproduced with.
     Reproduction,

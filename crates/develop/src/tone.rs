@@ -81,7 +81,7 @@ impl Curve {
             Self { base, table, colours }
         };
         match look {
-            Look::Neutral => Some(curve(7, 0.28, 1.0)),
+            Look::Neutral | Look::Camera => Some(curve(7, 0.28, 1.0)),
             Look::Vivid => Some(curve(8, 0.28, 1.15)),
             Look::Flat => Some(curve(5, 0.24, 1.0)),
             Look::Reproduction | Look::Linear => None,

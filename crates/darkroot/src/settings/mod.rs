@@ -154,6 +154,9 @@ pub enum SettingsError {
         /// Names of the settings that ask for it.
         settings: Vec<&'static str>,
     },
+    /// A curve where the camera's own is asked for.
+    #[error("the look of the camera has a curve of its own: leave out curve, or choose another look")]
+    CurveOnCamera,
     /// Something of a chart without its shot.
     #[error(
         "{setting} asks for what a chart shows, and no shot of one is named; name it with exposure-from-chart"
@@ -225,6 +228,9 @@ impl Settings {
             return Err(SettingsError::CameraNeedsFloat);
         }
         check_tones(self, &recipe, linear || camera)?;
+        if recipe.look == Look::Camera && recipe.tones.curve.is_some() {
+            return Err(SettingsError::CurveOnCamera);
+        }
         from_chart::check(self, camera)?;
         if linear && bits == 8 {
             return Err(SettingsError::LinearInEightBits { format: format.name() });
@@ -267,7 +273,7 @@ fn check_tones(settings: &Settings, recipe: &Recipe, linear: bool) -> Result<(),
 /// What is about the sensor's light has no meaning for a picture that the camera rendered.
 fn check_preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
     let asks = [
-        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear)),
+        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear | Look::Camera)),
         ("space", recipe.output.space == OutputSpace::Camera),
         ("profile", matches!(settings.profile, ProfileChoice::File(_))),
         ("engine", settings.engine == Engine::Imagepipe),

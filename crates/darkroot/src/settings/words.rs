@@ -52,10 +52,15 @@ pub(super) const CHROMA: [Word<ChromaSubsampling>; 3] = [
     word("420", ChromaSubsampling::S420, ""),
 ];
 pub(super) const SWITCH: [Word<bool>; 2] = [word("true", true, ""), word("false", false, "")];
-pub(super) const LOOKS: [Word<Look>; 5] = [
+pub(super) const LOOKS: [Word<Look>; 6] = [
     word("neutral", Look::Neutral, "Gentle contrast, soft highlights, colours as measured"),
     word("vivid", Look::Vivid, "More contrast and chroma"),
     word("flat", Look::Flat, "Low contrast, for further editing"),
+    word(
+        "camera",
+        Look::Camera,
+        "As the camera rendered it: a curve and chroma fitted to the embedded preview",
+    ),
     word("reproduction", Look::Reproduction, "Colorimetric, no tone curve: an original as it was measured"),
     word("linear", Look::Linear, "Strictly scene-linear, for measurement"),
 ];
