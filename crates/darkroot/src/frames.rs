@@ -92,7 +92,7 @@ pub(crate) fn apply(photo: Photo, settings: &Settings) -> Result<Photo, Error> {
         companions::even_out(&mut capture, &frames).map_err(|fault| Error::frame(path, fault))?;
         capture.notes.push(format!("evened out by {}", counted(frames.len(), "flat frame")));
     }
-    Ok(Photo { rendered, ..Photo::from(capture) })
+    Ok(Photo::with_rendered(capture, rendered))
 }
 
 fn counted(n: usize, what: &str) -> String {

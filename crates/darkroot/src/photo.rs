@@ -146,6 +146,11 @@ impl Photo {
         frames::apply(self, settings)
     }
 
+    /// A capture, and what the camera rendered of it.
+    pub(crate) fn with_rendered(capture: Capture, rendered: Option<Arc<Picture>>) -> Self {
+        Self { rendered, ..Self::from(capture) }
+    }
+
     /// The capture alone; a copy where it is shared.
     pub(crate) fn into_capture(self) -> Capture {
         Arc::unwrap_or_clone(self.capture)

@@ -27,8 +27,8 @@ struct Light {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
     columns: usize,
-    /// L* and chroma (Oklab) of each, row by row.
-    cells: Vec<[f64; 2]>,
+    /// L*, and a and b of Oklab, of each, row by row.
+    cells: Vec<[f64; 3]>,
 }
 
 /// The whole of a picture, less its borders, from which cells are made.
@@ -46,11 +46,12 @@ impl Cells {
         self.calm(other).map(|i| [self.cells[i][0], other.cells[i][0]]).collect()
     }
 
-    /// Chroma of the same cells, where they are neither nearly black nor nearly white.
-    pub(super) fn calm_chroma(&self, other: &Self) -> impl Iterator<Item = [f64; 2]> {
+    /// Colours (a and b of Oklab) of the same cells, where they are neither nearly black nor nearly white.
+    pub(super) fn calm_colours(&self, other: &Self) -> Vec<[[f64; 2]; 2]> {
         let lit = |v: f64| (15.0..95.0).contains(&v);
         let both = move |i: &usize| lit(self.cells[*i][0]) && lit(other.cells[*i][0]);
-        self.calm(other).filter(both).map(|i| [self.cells[i][1], other.cells[i][1]])
+        let colour = |cell: [f64; 3]| [cell[1], cell[2]];
+        self.calm(other).filter(both).map(|i| [colour(self.cells[i]), colour(other.cells[i])]).collect()
     }
 
     fn calm(&self, other: &Self) -> impl Iterator<Item = usize> {
@@ -153,11 +154,11 @@ impl Light {
     }
 }
 
-/// L* and chroma of linear sRGB.
-fn seen(rgb: [f64; 3]) -> [f64; 2] {
+/// L*, a and b of linear sRGB.
+fn seen(rgb: [f64; 3]) -> [f64; 3] {
     let space = darkroot_colour::RgbSpace::SRGB;
     let xyz = space.to_xyz() * Vector3::from(rgb);
     let lightness = 100.0 * TransferCurve::LStar.encode(xyz[1].clamp(0.0, 1.0));
     let colour = Oklab::of(Xyz::from(space.to_xyz_under(darkroot_colour::white::D65) * Vector3::from(rgb)));
-    [lightness, colour.chroma()]
+    [lightness, colour.a, colour.b]
 }

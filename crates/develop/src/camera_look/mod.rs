@@ -39,6 +39,8 @@ const LEFT: f64 = 4.0;
 const COLOURED: f64 = 0.03;
 /// Cells that it takes for that.
 const FEW: usize = 30;
+/// Difference of colours all over the picture from which on whites differ, Oklab.
+const WHITES: f64 = 0.025;
 /// What a mild factor on chroma is.
 const CHROMA: [f64; 2] = [0.7, 1.5];
 
@@ -202,11 +204,14 @@ fn smooth(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Factor on chroma.
+/// Factor on chroma; 1 where the whites of the two differ, so that it would tell nothing.
 fn saturation(ours: &Cells, theirs: &Cells) -> f64 {
-    let ratios: Vec<f64> =
-        ours.calm_chroma(theirs).filter(|[a, _]| *a > COLOURED).map(|[a, b]| b / a).collect();
-    if ratios.len() < FEW {
+    let pairs = ours.calm_colours(theirs);
+    let shift = [0, 1].map(|i| median(pairs.iter().map(|[a, b]| b[i] - a[i]).collect()));
+    let chroma = |[a, b]: [f64; 2]| a.hypot(b);
+    let coloured = pairs.iter().map(|pair| pair.map(chroma)).filter(|[a, _]| *a > COLOURED);
+    let ratios: Vec<f64> = coloured.map(|[a, b]| b / a).collect();
+    if ratios.len() < FEW || chroma(shift) > WHITES {
         return 1.0;
     }
     let hundredths = (100.0 * median(ratios)).round() / 100.0;

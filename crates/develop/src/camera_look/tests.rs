@@ -37,6 +37,31 @@ fn rendered(x: f64, y: f64) -> [f32; 3] {
 
 use darkroot_colour::TransferCurve;
 
+/// The scene with its chroma times a factor, and all of it warmer.
+fn coloured(factor: f64, warmer: f64) -> Picture {
+    picture(OURS, |x, y| {
+        let [r, g, b] = scene(x, y).map(f64::from);
+        let grey = (r + g + b) / 3.0;
+        let of = |v: f64, gain: f64| (gain * (grey + factor * (v - grey))).clamp(0.0, 1.0) as f32;
+        [of(r, 1.0 + warmer), of(g, 1.0), of(b, 1.0 - warmer)]
+    })
+}
+
+#[test]
+fn chroma_is_told_where_whites_agree() {
+    let told = |factor, warmer| {
+        let (ours, theirs) =
+            Cells::of_whole(&coloured(factor, warmer)).beside(&picture(OURS, scene)).unwrap();
+        saturation(&ours, &theirs)
+    };
+    assert!(
+        (told(1.0, 0.0) - 1.0).abs() < 0.02 && (1.15..1.35).contains(&told(1.3, 0.0)),
+        "{}",
+        told(1.3, 0.0)
+    );
+    assert!((told(1.3, 0.4) - 1.0).abs() < 1e-9);
+}
+
 fn found(preview: &Picture) -> Result<CameraLook, NoCameraLook> {
     let (ours, theirs) = Cells::of_whole(preview).beside(&picture(OURS, scene)).ok_or(NoCameraLook::Shape)?;
     curve(&ours, &theirs)
