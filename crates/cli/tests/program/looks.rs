@@ -1,0 +1,55 @@
+//! Looks that a file brings along.
+
+use super::*;
+
+/// Mean L* of a picture.
+fn lightness(desk: &Desk, name: &str) -> f64 {
+    let picture = image::open(desk.path(name)).unwrap().thumbnail(300, 300).into_rgb8();
+    let light = |v: u8| darkroot_colour::RgbSpace::SRGB.curve.decode(f64::from(v) / 255.0);
+    let of = |p: &image::Rgb<u8>| {
+        let y = 0.2126 * light(p[0]) + 0.7152 * light(p[1]) + 0.0722 * light(p[2]);
+        100.0 * darkroot_colour::TransferCurve::LStar.encode(y)
+    };
+    picture.pixels().map(of).sum::<f64>() / f64::from(picture.width() * picture.height())
+}
+
+#[test]
+#[cfg_attr(not(has_raw_files), ignore = "needs `raw` in DARKROOT_DATA")]
+fn the_look_of_the_camera_is_as_bright_as_its_preview() {
+    let desk = Desk::new();
+    for (file, neutral_is_off) in [("canon_30d.cr2", 2.0), ("lg_g4_adobe_lossy.dng", 0.5)] {
+        let raw = real_files("raw").join(file);
+        let raw = raw.to_str().unwrap();
+        let run = desk.run(&["inspect", raw, "--preview", "p.jpg", "--overwrite"]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        let picture = |name, look| {
+            desk.develop(&[raw, "-o", name, "--look", look, "--resize", "long:600", "--overwrite"])
+        };
+        picture("n.png", "neutral");
+        let run = picture("c.png", "camera");
+        assert!(run.err.contains("the look is that of the embedded preview, as --curve "), "{}", run.err);
+        let preview = lightness(&desk, "p.jpg");
+        let [neutral, camera] = ["n.png", "c.png"].map(|name| (lightness(&desk, name) - preview).abs());
+        assert!(neutral > neutral_is_off && camera < 0.6 * neutral, "{file}: {neutral} {camera}");
+        // What the note says makes the same picture, but for its rounding.
+        let said = run.err.split("as --curve ").nth(1).unwrap();
+        let curve = said.split_whitespace().next().unwrap();
+        let saturation = said.split("--saturation ").nth(1).unwrap().split_whitespace().next().unwrap();
+        let options = ["--curve", curve, "--saturation", saturation, "--resize", "long:600", "--overwrite"];
+        desk.develop(&[&[raw, "-o", "s.png"], &options[..]].concat());
+        assert!((lightness(&desk, "s.png") - lightness(&desk, "c.png")).abs() < 0.5, "{file}");
+    }
+}
+
+#[test]
+fn a_camera_without_a_preview_has_no_look_and_has_one_curve_only() {
+    let desk = Desk::with_dng();
+    desk.fails(
+        1,
+        &["develop", "a.dng", "-o", "o.png", "--look", "camera"],
+        &["a.dng", "no embedded preview"],
+    );
+    let curve = ["develop", "a.dng", "-o", "o.png", "--look", "camera", "--curve", "50:40"];
+    desk.fails(2, &curve, &["has a curve of its own"]);
+    assert!(!desk.path("o.png").exists());
+}
