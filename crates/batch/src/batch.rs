@@ -1,7 +1,7 @@
 //! An output folder with its journal and its workers: plans, sessions, runs.
 
 use std::collections::{HashMap, HashSet, VecDeque};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use darkroot::{ProfileStore, files};
@@ -168,7 +168,13 @@ impl Batch {
                 State::Done(_) => run.summary.skipped += 1,
                 State::Conflict(conflict) => run.conflict(item, conflict),
                 State::Todo(why) => {
-                    let task = develop_task(item, *why, plan, &self.out, &self.scratch, self.thumbnails);
+                    // Whatever stands at the place of a new output stays; the plan knows the others for ours.
+                    let overwrite = *why != Why::New || plan.overwrite;
+                    let task = Develop {
+                        overwrite,
+                        thumbnail: self.thumbnails,
+                        ..item.task(item.place(&self.out), &self.out, &self.scratch)
+                    };
                     let size = item.source.size;
                     queue.push_back(Work::new(id, Task::Develop(task), size));
                 }
@@ -213,28 +219,5 @@ impl Batch {
                 Next::GoOn
             })
             .map_err(BatchError::Worker)
-    }
-}
-
-fn develop_task(
-    item: &Item,
-    why: Why,
-    plan: &BatchPlan,
-    out: &Path,
-    scratch: &Path,
-    thumbnail: bool,
-) -> Develop {
-    // Whatever stands at the place of a new output stays; the plan knows the others for ours.
-    let overwrite = why != Why::New || plan.overwrite;
-    Develop {
-        input: item.source.path.clone(),
-        output: item.place(out),
-        texts: item.prepared.texts.clone(),
-        format: item.prepared.format.extension().to_owned(),
-        session: Vec::clone(&item.session),
-        overwrite,
-        out: out.to_owned(),
-        scratch: scratch.to_owned(),
-        thumbnail,
     }
 }

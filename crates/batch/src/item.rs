@@ -10,19 +10,26 @@ use darkroot_encode::Format;
 use super::facts::{CameraNames, SessionColour};
 use super::failure::Conflict;
 use super::find::Source;
+use super::names::LeftOut;
 use super::record::Done;
 use super::shard::Shard;
 use super::source_fault::SourceFault;
+use super::task::Develop;
 use super::{hash, names};
 
 /// What outputs with one name become.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum OnCollision {
     /// Nothing is done at all.
     #[default]
     Refuse,
     /// They get different names.
     Suffix,
+    /// One is made: of the input that it was made of before, else of the first by name. The others are left out.
+    Skip,
+    /// One is made, of an input with one of these endings (lower case, without the dot), the first of them that there is; else
+    /// as for `Skip`.
+    Prefer(Vec<String>),
 }
 
 /// How a plan is made.
@@ -137,6 +144,21 @@ impl Item {
         shown(&path_text::path(&self.output))
     }
 
+    /// What a worker is told to develop it: to this output, below a folder, with unfinished ones in another below that.
+    pub(crate) fn task(&self, output: PathBuf, out: &Path, scratch: &Path) -> Develop {
+        Develop {
+            input: self.source.path.clone(),
+            output,
+            texts: self.prepared.texts.clone(),
+            format: self.prepared.format.extension().to_owned(),
+            session: Vec::clone(&self.session),
+            overwrite: false,
+            out: out.to_owned(),
+            scratch: scratch.to_owned(),
+            thumbnail: false,
+        }
+    }
+
     /// SHA-256 of all that a file of this camera is developed with, without where the profile's file lies.
     pub(crate) fn settings_hash(&self, camera: &CameraNames) -> String {
         let mut text = self.prepared.canonical.clone();
@@ -159,6 +181,8 @@ pub struct BatchPlan {
     pub overwrite: bool,
     /// All files of the shard.
     pub items: Vec<Item>,
+    /// Inputs whose picture is made of another one.
+    pub left_out: Vec<LeftOut>,
     /// What could not be read while looking for inputs.
     pub faults: Vec<SourceFault>,
 }

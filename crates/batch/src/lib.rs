@@ -82,6 +82,8 @@ mod work;
 mod crew;
 
 mod headers;
+mod trial;
+pub use trial::trial;
 mod split;
 mod state;
 
@@ -101,14 +103,14 @@ mod watch_plan;
 pub use batch::Batch;
 pub use batch_error::BatchError;
 pub use crew_options::{CrewOptions, Workers};
-pub use estimate::{Estimate, estimate};
+pub use estimate::{Estimate, Experience};
 pub use failure::{Conflict, Failure, FailureKind};
 pub use filter::FindError;
 pub use find::{Search, Source, Sources, find};
 pub use history::History;
 pub use item::{BatchPlan, Item, OnCollision, PlanOptions, State, Why};
 pub use journal::JournalError;
-pub use names::Collision;
+pub use names::{Collision, LeftOut};
 pub use notice::{Notice, WatchError, WatchOptions, Watched};
 pub use outcome::{Event, StopReason, Summary};
 pub use plan::{check, plan_only};

@@ -114,6 +114,48 @@ pub fn resolve(outputs: &mut [(String, String)], owner: impl Fn(&str) -> Option<
     }
 }
 
+/// An input that is not developed, because another one makes its picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Key of the input.
+    pub input: String,
+    /// Key of the one that is developed.
+    pub instead: String,
+    /// The picture of both, below the output folder.
+    pub output: String,
+}
+
+impl LeftOut {
+    /// In words.
+    pub fn words(&self) -> String {
+        let [input, instead] = [&self.input, &self.instead].map(|key| key_shown(key));
+        format!("{input}: left out, {} is made of {instead}", key_shown(&self.output))
+    }
+}
+
+/// Resolves collisions by leaving inputs out: one with the first of these endings (lower case) makes the picture; among those
+/// that are alike, the one that made it before, else the first.
+pub fn left_out(
+    outputs: &[(String, String)],
+    endings: &[String],
+    owner: impl Fn(&str) -> Option<String>,
+) -> Vec<LeftOut> {
+    let rank = |input: &String| {
+        let ending = input.rsplit_once('.').map_or("", |(_, e)| e).to_lowercase();
+        endings.iter().position(|e| *e == ending).unwrap_or(endings.len())
+    };
+    let of_group = |Collision { output, inputs }: Collision| {
+        let owned = owner(&output);
+        let best = inputs.iter().min_by_key(|input| (rank(input), owned.as_ref() != Some(input)));
+        let instead = best.cloned().unwrap_or_default();
+        inputs.into_iter().filter_map(move |input| {
+            let output = output.clone();
+            (input != instead).then(|| LeftOut { input, instead: instead.clone(), output })
+        })
+    };
+    collisions(outputs).into_iter().flat_map(of_group).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,6 +177,23 @@ mod tests {
         );
         let wrong = fill("{name}.jpg", &fields("x.nef")).unwrap_err().to_string();
         assert!(wrong.contains("{stem}") && wrong.contains("{folder}"), "{wrong}");
+    }
+
+    #[test]
+    fn one_of_several_inputs_is_kept_by_ending_then_by_history_then_by_order() {
+        let outputs: Vec<(String, String)> = ["b.dng", "b.NEF", "b.cr2", "c.dng"]
+            .map(|key| (key.to_owned(), format!("{}.jpg", &key[..1])))
+            .to_vec();
+        let kept = |endings: &[&str], owner: Option<&str>| {
+            let endings: Vec<String> = endings.iter().map(|&e| e.to_owned()).collect();
+            let left = left_out(&outputs, &endings, |_| owner.map(str::to_owned));
+            assert_eq!(left.len(), 2, "{left:?}");
+            left[0].instead.clone()
+        };
+        assert_eq!(kept(&[], None), "b.dng");
+        assert_eq!(kept(&[], Some("b.cr2")), "b.cr2");
+        assert_eq!(kept(&["raf", "nef", "cr2"], Some("b.dng")), "b.NEF");
+        assert_eq!(kept(&["raf"], Some("b.NEF")), "b.NEF");
     }
 
     #[test]

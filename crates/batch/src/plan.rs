@@ -1,5 +1,6 @@
 //! What a batch is going to do, decided before anything is written.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -42,20 +43,25 @@ pub(crate) fn plan(
     let heads = if names::needs_headers(&options.template) { headers(&files) } else { Vec::new() };
     let mut outputs = name(&files, options, &prepared, &numbers, &heads)?;
     let collisions = names::collisions(&outputs);
+    let mut left_out = Vec::new();
     if !collisions.is_empty() {
-        if options.on_collision == OnCollision::Refuse {
-            return Err(PlanFault::Collisions(collisions));
-        }
         let owner = |output: &str| history.outputs.get(output)?.done.as_ref().map(|d| d.input.clone());
-        names::resolve(&mut outputs, owner);
+        match &options.on_collision {
+            OnCollision::Refuse => return Err(PlanFault::Collisions(collisions)),
+            OnCollision::Suffix => names::resolve(&mut outputs, owner),
+            OnCollision::Skip => left_out = names::left_out(&outputs, &[], owner),
+            OnCollision::Prefer(endings) => left_out = names::left_out(&outputs, endings, owner),
+        }
     }
     refuse_over_inputs(&files, &outputs, &options.out)?;
 
+    let out: HashSet<&str> = left_out.iter().map(|left| left.input.as_str()).collect();
     let items: Vec<Item> = files
         .into_iter()
         .zip(outputs)
         .zip(prepared.into_iter().zip(numbers))
         .filter(|((file, _), _)| options.shard.has(&file.key))
+        .filter(|((file, _), _)| !out.contains(file.key.as_str()))
         .map(|((source, (_, output)), (prepared, number))| {
             let session = session(&source);
             Item { source, output, number, prepared, session, state: State::Todo(Why::New) }
@@ -66,6 +72,7 @@ pub(crate) fn plan(
         out: options.out.clone(),
         template: options.template.clone(),
         items,
+        left_out,
         faults: sources.faults,
     };
     let profiles = Profiles::of(store);
@@ -176,7 +183,7 @@ fn numbers(files: &[Source], history: &History) -> Vec<usize> {
 
 fn refuse_over_inputs(files: &[Source], outputs: &[(String, String)], out: &Path) -> Result<(), PlanFault> {
     let real = |p: &Path| std::fs::canonicalize(p).ok();
-    let inputs: std::collections::HashSet<PathBuf> = files.iter().filter_map(|f| real(&f.path)).collect();
+    let inputs: HashSet<PathBuf> = files.iter().filter_map(|f| real(&f.path)).collect();
     for (_, output) in outputs {
         let path = out.join(path_text::path(output));
         if real(&path).is_some_and(|path| inputs.contains(&path)) {

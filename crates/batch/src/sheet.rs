@@ -172,6 +172,12 @@ impl Sheet {
             "left": summary.left, "stopped": self.stopped, "interrupted": summary.interrupted,
             "seconds": summary.seconds, "megapixels": summary.pixels as f64 / 1e6,
             "faults": plan.faults.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "left_out": plan.left_out.iter().map(|left| json!({
+                "input": left.input, "instead": left.instead, "output": left.output,
+            })).collect::<Vec<_>>(),
+            "causes": causes(&self.rows).into_iter().map(|(cause, files)| json!({
+                "cause": cause, "files": files.iter().map(|row| &row.input).collect::<Vec<_>>(),
+            })).collect::<Vec<_>>(),
             "files": self.rows.iter().map(row).collect::<Vec<_>>(),
         });
         format!("{value:#}\n")
@@ -191,19 +197,59 @@ impl Sheet {
                 picture.as_deref(),
             ));
         }
-        let faults = plan.faults.iter().map(ToString::to_string);
-        let failures = self.rows.iter().filter_map(|r| r.error.clone());
-        let bad: Vec<String> = faults.chain(failures).collect();
+        let faults: Vec<String> = plan.faults.iter().map(ToString::to_string).collect();
+        let causes = causes(&self.rows);
         let body = html! {
             header { (head(plan, summary, self.stopped.as_deref())) }
-            @if !bad.is_empty() {
-                section.failures { h2 { "Failed" } ul { @for words in bad { li { (words) } } } }
+            @if !faults.is_empty() || !causes.is_empty() {
+                section.failures {
+                    h2 { "Failed" }
+                    @if !faults.is_empty() { ul { @for words in faults { li { (words) } } } }
+                    @for (cause, files) in causes { (failed(cause, &files)) }
+                }
+            }
+            @if !plan.left_out.is_empty() {
+                section { h2 { "Left out" } ul { @for left in &plan.left_out { li { (left.words()) } } } }
             }
             main { @for figure in figures { (figure) } }
         };
         let pictures = summary.done + summary.skipped;
         let title = format!("{pictures} pictures in {}", shown(&plan.out));
         Ok(page(&title, STYLE, body))
+    }
+}
+
+/// Failed files by cause, the one with most files first.
+fn causes(rows: &[Row]) -> Vec<(&str, Vec<&Row>)> {
+    let mut causes: Vec<(&str, Vec<&Row>)> = Vec::new();
+    for row in rows {
+        let Some(error) = &row.error else { continue };
+        let cause = without_path(error, &row.input);
+        match causes.iter_mut().find(|(known, _)| *known == cause) {
+            Some((_, files)) => files.push(row),
+            None => causes.push((cause, vec![row])),
+        }
+    }
+    causes.sort_by_key(|(_, files)| std::cmp::Reverse(files.len()));
+    causes
+}
+
+/// A sentence without the name of the input that it begins with.
+fn without_path<'a>(error: &'a str, input: &str) -> &'a str {
+    let name = key_shown(input);
+    let after = error.find(&name).map(|at| &error[at + name.len()..]);
+    after.and_then(|rest| rest.strip_prefix(": ")).unwrap_or(error)
+}
+
+/// One cause with its files; a single file stands in its sentence.
+fn failed(cause: &str, files: &[&Row]) -> Markup {
+    html! {
+        @if let [row] = files {
+            p { b { (key_shown(&row.input)) } ": " (cause) }
+        } @else {
+            p { b { (files.len()) " files" } ": " (cause) }
+            ul { @for row in files { li { (key_shown(&row.input)) } } }
+        }
     }
 }
 
@@ -291,6 +337,26 @@ mod tests {
         let row = Row { output: "a<b>&.jpg".into(), words: "\"x\"".into(), ..Row::default() };
         let page = figure(&row, "a%3Cb%3E%26.jpg", None).into_string();
         assert!(page.contains("<b>a&lt;b&gt;&amp;.jpg</b>") && page.contains("no preview"), "{page}");
+    }
+
+    #[test]
+    fn failures_stand_by_cause_the_most_frequent_first() {
+        let row = |input: &str, error: &str| Row {
+            input: input.into(),
+            error: Some(error.into()),
+            ..Row::default()
+        };
+        let rows = [
+            row("a.dng", "/in/a.dng: is empty"),
+            row("x/b.dng", "/in/x/b.dng: is damaged"),
+            row("c.dng", "/in/c.dng: is damaged"),
+            row("d.dng", "the disk is full"),
+        ];
+        let causes = causes(&rows);
+        let found: Vec<(&str, usize)> = causes.iter().map(|(cause, files)| (*cause, files.len())).collect();
+        assert_eq!(found, [("is damaged", 2), ("is empty", 1), ("the disk is full", 1)]);
+        let page = failed("is damaged", &causes[0].1).into_string();
+        assert!(page.contains("2 files") && page.contains("x/b.dng") && page.contains("c.dng"), "{page}");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Args, Subcommand};
 use darkroot_batch::{
-    Batch as Run, BatchPlan, Event, Session, SettingsByFile, Sheet, State, Summary, estimate, find, journal,
+    Batch as Run, BatchPlan, Event, Experience, Session, SettingsByFile, Sheet, State, Summary, find, journal,
 };
 
 pub(crate) use options::{Work, store};
@@ -34,7 +34,8 @@ pub(crate) struct Batch {
     #[command(flatten)]
     work: Work,
 
-    /// Say what would be done, with sizes and an estimate, and do nothing
+    /// Say what would be done, with sizes and an estimate, and write nothing; where no journal tells how long such files
+    /// take, a few of them are developed for that, and thrown away
     #[arg(long)]
     dry_run: bool,
 
@@ -84,8 +85,14 @@ impl Batch {
 
         if self.dry_run {
             let history = journal::read_merged(&out)?;
-            let plan = darkroot_batch::plan_only(sources, &options, &mut settings, &history, &store, crew)?;
-            shown.plan(&plan, &estimate(&plan, &history, jobs))?;
+            let plan =
+                darkroot_batch::plan_only(sources, &options, &mut settings, &history, &store, crew.clone())?;
+            let mut experience = Experience::of(&history);
+            if experience.is_empty() {
+                // Without a place for a few trials, or a worker, typical figures serve.
+                experience = darkroot_batch::trial(&plan, crew, &stop).unwrap_or_default();
+            }
+            shown.plan(&plan, &experience.estimate(&plan, jobs))?;
             return Ok(if faults(&plan) == 0 { Outcome::Done } else { Outcome::SomeFailed });
         }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result, ensure};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use darkroot::{ProfileStore, path_text};
 use darkroot_batch::{
     ChartShot, CrewOptions, OnCollision, PlanOptions, Search, Shard, Wording, Workers, names, system,
@@ -30,9 +30,10 @@ pub(crate) struct Work {
     #[arg(long, value_name = "TEMPLATE", default_value = names::MIRRORED, help_heading = "Output")]
     name: String,
 
-    /// What to do when several inputs would become one output
-    #[arg(long, value_enum, default_value = "refuse", help_heading = "Output")]
-    on_collision: OnCollisionName,
+    /// When several inputs would become one output: refuse (do nothing, list them), suffix (DSC_1-dng.jpg), skip (the first
+    /// one is developed), or prefer:nef,dng (the one with the first of these endings is)
+    #[arg(long, value_name = "WAY", value_parser = on_collision, default_value = "refuse", help_heading = "Output")]
+    on_collision: OnCollision,
 
     /// Replace pictures in OUT that are not from a batch, or were changed since
     #[arg(long, help_heading = "Output")]
@@ -98,12 +99,19 @@ pub(crate) struct Work {
     pub(crate) picture: Picture,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum OnCollisionName {
-    /// Nothing is done, and all of them are listed
-    Refuse,
-    /// One keeps the name, the others get the ending of their file: DSC_1-dng.jpg
-    Suffix,
+/// A way with outputs of one name.
+fn on_collision(text: &str) -> Result<OnCollision, String> {
+    let ending = |text: &str| text.trim().trim_start_matches('.').to_lowercase();
+    let preferred = text.strip_prefix("prefer").map(|rest| rest.trim_start_matches([':', '=', ' ']));
+    match (text, preferred) {
+        ("refuse", _) => Ok(OnCollision::Refuse),
+        ("suffix", _) => Ok(OnCollision::Suffix),
+        ("skip", _) => Ok(OnCollision::Skip),
+        (_, Some(endings)) if !endings.is_empty() => {
+            Ok(OnCollision::Prefer(endings.split(',').map(ending).collect()))
+        }
+        _ => Err("use refuse, suffix, skip or prefer:nef,dng".to_owned()),
+    }
 }
 
 impl Work {
@@ -127,10 +135,7 @@ impl Work {
     pub(crate) fn plan_options(&self) -> Result<PlanOptions> {
         let mut options = PlanOptions::into(&self.out()?);
         options.template.clone_from(&self.name);
-        options.on_collision = match self.on_collision {
-            OnCollisionName::Refuse => OnCollision::Refuse,
-            OnCollisionName::Suffix => OnCollision::Suffix,
-        };
+        options.on_collision = self.on_collision.clone();
         options.overwrite = self.overwrite;
         options.shard = self.shard.unwrap_or(Shard::WHOLE);
         Ok(options)

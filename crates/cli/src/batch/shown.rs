@@ -75,6 +75,7 @@ impl Shown {
                 writeln!(crate::out::lines(), "{words}")?;
             }
         }
+        self.left_out(plan)?;
         self.faults(plan);
         let Estimate { files, bytes, seconds, output_bytes, by_experience } = *estimate;
         self.line(&json!({
@@ -83,7 +84,7 @@ impl Shown {
         }))?;
         let unchanged = plan.items.iter().filter(|i| matches!(i.state, State::Done(_))).count();
         let by =
-            if by_experience { "as earlier files took" } else { "as such files take on a usual machine" };
+            if by_experience { "as such files took here" } else { "as such files take on a usual machine" };
         let outputs =
             output_bytes.map_or_else(String::new, |b| format!(", about {} of pictures", megabytes(b)));
         self.note(&format!(
@@ -91,6 +92,16 @@ impl Shown {
             megabytes(bytes),
             duration(seconds)
         ));
+        Ok(())
+    }
+
+    /// Inputs that others stand for.
+    fn left_out(&self, plan: &BatchPlan) -> Result<()> {
+        for left in &plan.left_out {
+            self.note(&left.words());
+            let (input, instead, output) = (&left.input, &left.instead, &left.output);
+            self.line(&json!({ "event": "left-out", "input": input, "instead": instead, "output": output }))?;
+        }
         Ok(())
     }
 
@@ -102,6 +113,7 @@ impl Shown {
 
     /// A plan is about to run.
     pub(crate) fn begin(&mut self, plan: &BatchPlan) -> Result<()> {
+        self.left_out(plan)?;
         self.faults(plan);
         for fault in &plan.faults {
             self.line(&json!({ "event": "fault", "error": crate::hint::words(fault) }))?;

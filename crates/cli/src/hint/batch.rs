@@ -50,7 +50,8 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     None
 }
 
-const COLLISION: &str = "add `--on-collision suffix`, or name them apart with `--name`";
+const COLLISION: &str =
+    "add `--on-collision suffix` (or skip, or prefer:nef,dng), or name them apart with `--name`";
 
 fn say(hint: &str) -> Option<String> {
     Some(hint.to_owned())

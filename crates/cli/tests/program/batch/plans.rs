@@ -72,6 +72,38 @@ fn collisions_are_listed_before_anything_runs() {
 }
 
 #[test]
+fn of_inputs_with_one_output_the_preferred_one_is_developed() {
+    let desk = Desk::with_tree();
+    desk.put("in/a.nef", small_nef());
+    let cameras = |arguments: &[&str]| {
+        let run = desk.batch(&[&["--json"], arguments].concat());
+        assert_eq!(run.code, 0, "{}", run.err);
+        let done = events(&run, "done");
+        let input = done.iter().find(|v| v["output"] == "a.jpg").map(|v| v["input"].clone());
+        let left = events(&run, "left-out");
+        assert_eq!(left.len(), 1, "{}", run.out);
+        (input, left[0]["input"].clone())
+    };
+    assert_eq!(cameras(&["--on-collision", "skip"]), (Some("a.dng".into()), "a.nef".into()));
+    // What made it before goes on making it.
+    assert_eq!(cameras(&["--on-collision", "skip"]), (None, "a.nef".into()));
+    assert_eq!(cameras(&["--on-collision", "prefer:NEF,dng"]), (Some("a.nef".into()), "a.dng".into()));
+    let shown = desk.batch(&["--on-collision", "prefer:nef", "--dry-run"]);
+    assert!(shown.err.contains("a.dng: left out, a.jpg is made of a.nef"), "{}", shown.err);
+    desk.fails(2, &["batch", "in", "-o", "out", "--on-collision", "prefer"], &["prefer:nef,dng"]);
+}
+
+#[test]
+fn an_estimate_comes_of_a_trial_that_leaves_nothing_behind() {
+    let desk = Desk::with_tree();
+    let run = desk.batch(&["--dry-run", "--json"]);
+    let estimate = &events(&run, "estimate")[0];
+    assert_eq!((estimate["files"].as_u64(), estimate["by_experience"].as_bool()), (Some(4), Some(true)));
+    assert!(estimate["seconds"].as_f64().unwrap() > 0.0 && estimate["output_bytes"].as_u64().unwrap() > 1000);
+    assert!(!desk.path("out").exists());
+}
+
+#[test]
 fn pictures_may_lie_beside_their_raw_files() {
     let desk = Desk::with_tree();
     let beside = ["batch", "in", "-o", "in", "--json"];
