@@ -49,6 +49,10 @@ pub(crate) fn develop(
     let decode = file + 2 * counts + beside;
     // Noise of the coarse scales, and what it is looked for in.
     let noise = 2 * pixels;
+    if settings.encode.progressive && format == Format::Jpeg {
+        // The whole picture, its coefficients, and the file.
+        return WORKER + THREAD + decode.max(counts + noise + 4 * picture);
+    }
     if format.takes_bands() && settings.engine == Engine::Darkroot {
         // A few bands of rows, and what they became.
         return WORKER + THREAD + decode.max(counts + noise + picture / 16);

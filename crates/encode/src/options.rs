@@ -33,6 +33,8 @@ pub struct Options {
     pub quality: u8,
     /// Colour resolution of JPEG.
     pub subsampling: ChromaSubsampling,
+    /// Whether JPEG is progressive: some per cent smaller, seen early where it comes slowly; the whole picture is in memory.
+    pub progressive: bool,
     /// Compression of TIFF.
     pub compression: TiffCompression,
     /// How little time AVIF may take, 1 (smallest file) to 10 (fastest). On two cores a picture of 24 megapixels
@@ -46,6 +48,7 @@ impl Default for Options {
         Self {
             quality: 92,
             subsampling: ChromaSubsampling::default(),
+            progressive: false,
             compression: TiffCompression::default(),
             avif_speed: 9,
         }

@@ -3,7 +3,7 @@
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
 use super::text::{number, one_of};
-use super::words::{CHROMA, COMPRESSION, plain};
+use super::words::{CHROMA, COMPRESSION, SWITCH, plain};
 
 pub(super) const QUALITY: Setting = Setting {
     name: "quality",
@@ -29,6 +29,19 @@ pub(super) const CHROMA_SUBSAMPLING: Setting = Setting {
     help: "Chroma subsampling of JPEG",
     changes: Changes::Encoding,
     set: |to, text| put(&mut to.encode.subsampling, one_of(&CHROMA, text)),
+};
+
+pub(super) const PROGRESSIVE: Setting = Setting {
+    name: "progressive",
+    alias: None,
+    noun: "switch",
+    kind: Kind::Switch,
+    default: "false",
+    group: Group::Output,
+    placeholder: "BOOL",
+    help: "Progressive JPEG: some per cent smaller, and seen early where it comes slowly",
+    changes: Changes::Encoding,
+    set: |to, text| put(&mut to.encode.progressive, one_of(&SWITCH, text)),
 };
 
 pub(super) const TIFF_COMPRESSION: Setting = Setting {

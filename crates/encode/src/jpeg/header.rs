@@ -30,7 +30,15 @@ pub(super) struct Header<'a> {
 }
 
 impl Header<'_> {
+    /// All that stands before the bits of a baseline file.
     pub(super) fn bytes(&self) -> Vec<u8> {
+        let mut out = self.about();
+        self.tables(&mut out);
+        out
+    }
+
+    /// What the file says of the picture, with the file's beginning.
+    pub(super) fn about(&self) -> Vec<u8> {
         let mut out = vec![0xff, 0xd8];
         // JFIF 1.02, square pixels, no thumbnail.
         segment(&mut out, 0xe0, &[b"JFIF\0", &[1, 2, 0, 0, 1, 0, 1, 0, 0]]);
@@ -52,22 +60,26 @@ impl Header<'_> {
         for (number, part) in (1..).zip(parts) {
             segment(&mut out, 0xe2, &[ICC, &[number, count], part]);
         }
+        out
+    }
+
+    /// Steps, frame, codes, and the beginning of the scan.
+    fn tables(&self, out: &mut Vec<u8>) {
         for (table, kind) in (0..).zip(Kind::BOTH) {
             let steps = kind.steps(self.quality);
-            segment(&mut out, 0xdb, &[&[table], &ZIGZAG.map(|at| steps[usize::from(at)])]);
+            segment(out, 0xdb, &[&[table], &ZIGZAG.map(|at| steps[usize::from(at)])]);
         }
-        self.frame(&mut out);
+        self.frame(out);
         for (table, kind) in (0..).zip(Kind::BOTH) {
             for (class, code) in [(0x00, kind.mean_code()), (0x10, kind.code())] {
-                segment(&mut out, 0xc4, &[&[class | table], &code.lengths, code.values]);
+                segment(out, 0xc4, &[&[class | table], &code.lengths, code.values]);
             }
         }
         if self.restart > 0 {
-            segment(&mut out, 0xdd, &[&self.restart.to_be_bytes()]);
+            segment(out, 0xdd, &[&self.restart.to_be_bytes()]);
         }
         // All coefficients of three components, with the codes of the first for lightness.
-        segment(&mut out, 0xda, &[&[3, 1, 0x00, 2, 0x11, 3, 0x11], &[0, 63, 0]]);
-        out
+        segment(out, 0xda, &[&[3, 1, 0x00, 2, 0x11, 3, 0x11], &[0, 63, 0]]);
     }
 
     /// Baseline: eight bits, three components.

@@ -6,6 +6,7 @@
 
 mod entropy;
 mod header;
+mod progressive;
 mod tables;
 mod transform;
 mod units;
@@ -53,11 +54,31 @@ pub(crate) fn write<T: Sample>(
         xmp: exif::xmp(metadata),
         iptc: exif::iptc(metadata),
     };
+    if options.progressive {
+        out.write_all(&header.about()).map_err(Error::Io)?;
+        let whole = Vec::with_capacity(3 * size.area());
+        let keep = |_, samples: &[T]| Ok(bytemuck::cast_slice::<T, u8>(samples).to_vec());
+        let whole = bands::code(*size, rows, Whole(whole), keep, make)?;
+        let scans = progressive::scans(*size, &whole.0, options)?;
+        return out.write_all(&scans).map_err(Error::Io);
+    }
     out.write_all(&header.bytes()).map_err(Error::Io)?;
     let scan = Scan::new(subsampling, options.quality);
     let code = |_, samples: &[T]| Ok(scan.encode(bytemuck::cast_slice(samples), size.width));
     let scan = bands::code(*size, rows, RestartMarkers { out, next: None }, code, make)?;
     scan.out.write_all(&END).map_err(Error::Io)
+}
+
+/// All samples.
+struct Whole(Vec<u8>);
+
+impl Sink for Whole {
+    type Coded = Vec<u8>;
+
+    fn put(&mut self, band: Vec<u8>) -> Result<(), Error> {
+        self.0.extend(band);
+        Ok(())
+    }
 }
 
 /// Bands with a restart marker between two.
@@ -184,6 +205,29 @@ mod tests {
                 let (larger, worse) = (length / theirs.len() as f64, squares(&ours) / squares(&theirs));
                 assert!(larger < 1.01 && worse < 1.01, "{subsampling:?} {quality}: {larger} {worse}");
             }
+        }
+    }
+
+    #[test]
+    fn a_progressive_file_is_the_same_picture_and_smaller() {
+        for subsampling in [ChromaSubsampling::S444, ChromaSubsampling::S422, ChromaSubsampling::S420] {
+            let picture = srgb(500, 400);
+            let options = |progressive| Options { subsampling, progressive, ..Options::default() };
+            let [baseline, progressive] =
+                [false, true].map(|progressive| file(&picture, &options(progressive), &metadata()));
+            assert!(progressive.len() < baseline.len(), "{subsampling:?}");
+            // SOF2 in place of SOF0.
+            assert!(progressive.windows(4).any(|w| w == [0xff, 0xc2, 0, 17]));
+            assert!(!progressive.windows(4).any(|w| w == [0xff, 0xc0, 0, 17]));
+            let Samples::U8(there) = &picture.samples else { panic!() };
+            let [one, other] = [&baseline, &progressive].map(|file| {
+                let (_, Samples::U8(back)) = decoded(Format::Jpeg, file) else { panic!() };
+                there.iter().zip(&back).map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2)).sum::<f64>()
+            });
+            assert!(other < 1.02 * one, "{subsampling:?}: {one} {other}");
+            // What the file says of the picture is the same.
+            let tables = baseline.windows(2).position(|w| w == [0xff, 0xdb]).unwrap();
+            assert!(progressive.starts_with(&baseline[..tables]));
         }
     }
 
