@@ -5,7 +5,7 @@
 //! | JPEG | 8 | any with an ICC profile | lossy |
 //! | PNG | 8, 16 | any with an ICC profile | lossless |
 //! | TIFF | 8, 16, 32 (float) | any, also camera RGB | none or deflate |
-//! | WebP | 8 | any with an ICC profile | lossless |
+//! | WebP | 8 | any with an ICC profile | lossless or lossy |
 //! | AVIF | 8 (stored as 10) | sRGB | lossy |
 //! | OpenEXR | 32 (float) | linear ones, also camera RGB | PIZ, lossless |
 //! | JPEG XL | 8, 16 | all but those with a ROMM or L\* curve | lossless |
@@ -42,7 +42,7 @@ pub mod format;
 pub use format::Format;
 
 pub mod options;
-pub use options::{ChromaSubsampling, Options, TiffCompression};
+pub use options::{ChromaSubsampling, Options, TiffCompression, WebpKind};
 
 pub mod error;
 pub use error::Error;
@@ -101,7 +101,7 @@ pub fn write(
         Format::Jpeg | Format::Png | Format::Tiff => {
             InBands { picture, format, options, metadata, out }.with_all(&picture.samples)
         }
-        Format::Webp => output::buffered(out, |out| webp::write(&frame, &about, out)),
+        Format::Webp => output::buffered(out, |out| webp::write(&frame, options, &about, out)),
         Format::Avif => output::buffered(out, |out| avif::write(&frame, options, &about, out)),
         Format::Exr => output::buffered(out, |out| exr::write(&frame, &about, out)),
         Format::Jxl => output::buffered(out, |out| jxl::write(&frame, &about, out)),

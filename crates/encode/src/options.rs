@@ -25,10 +25,20 @@ pub enum TiffCompression {
     Deflate,
 }
 
+/// What WebP keeps of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WebpKind {
+    /// Every sample.
+    #[default]
+    Lossless,
+    /// What the quality says, with half the colour resolution.
+    Lossy,
+}
+
 /// Settings of the encoders. Each format takes note of its own only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// Quality of JPEG and AVIF, 1 (smallest file) to 100 (best picture). The two scales are not the same: AVIF
+    /// Quality of JPEG, AVIF and lossy WebP, 1 (smallest file) to 100 (best picture). The two scales are not the same: AVIF
     /// looks good at lower numbers.
     pub quality: u8,
     /// Colour resolution of JPEG.
@@ -37,6 +47,8 @@ pub struct Options {
     pub progressive: bool,
     /// Compression of TIFF.
     pub compression: TiffCompression,
+    /// Kind of WebP.
+    pub webp: WebpKind,
     /// How little time AVIF may take, 1 (smallest file) to 10 (fastest). On two cores a picture of 24 megapixels
     /// takes about 30 s at 8, 15 s at 9 and 9 s at 10, where its file is some 7 % larger.
     pub avif_speed: u8,
@@ -50,6 +62,7 @@ impl Default for Options {
             subsampling: ChromaSubsampling::default(),
             progressive: false,
             compression: TiffCompression::default(),
+            webp: WebpKind::default(),
             avif_speed: 9,
         }
     }

@@ -3,7 +3,7 @@
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
 use super::text::{number, one_of};
-use super::words::{CHROMA, COMPRESSION, SWITCH, plain};
+use super::words::{CHROMA, COMPRESSION, SWITCH, WEBP, plain};
 
 pub(super) const QUALITY: Setting = Setting {
     name: "quality",
@@ -13,7 +13,7 @@ pub(super) const QUALITY: Setting = Setting {
     default: "92",
     group: Group::Output,
     placeholder: "N",
-    help: "Quality of JPEG and AVIF, 1 to 100",
+    help: "Quality of JPEG, AVIF and lossy WebP, 1 to 100",
     changes: Changes::Encoding,
     set: |to, text| put(&mut to.encode.quality, number(text).map(|n| n as u8)),
 };
@@ -42,6 +42,19 @@ pub(super) const PROGRESSIVE: Setting = Setting {
     help: "Progressive JPEG: some per cent smaller, and seen early where it comes slowly",
     changes: Changes::Encoding,
     set: |to, text| put(&mut to.encode.progressive, one_of(&SWITCH, text)),
+};
+
+pub(super) const WEBP_KIND: Setting = Setting {
+    name: "webp",
+    alias: None,
+    noun: "kind of WebP",
+    kind: Kind::Words(const { &plain(&WEBP) }),
+    default: "lossless",
+    group: Group::Output,
+    placeholder: "",
+    help: "What WebP keeps",
+    changes: Changes::Encoding,
+    set: |to, text| put(&mut to.encode.webp, one_of(&WEBP, text)),
 };
 
 pub(super) const TIFF_COMPRESSION: Setting = Setting {

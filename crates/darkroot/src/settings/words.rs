@@ -1,7 +1,7 @@
 //! The words that settings of the table have for their values.
 
 use darkroot_develop::{Bits, Demosaic, Gamut, Highlights, HotPixels, Look};
-use darkroot_encode::{ChromaSubsampling, Format, TiffCompression};
+use darkroot_encode::{ChromaSubsampling, Format, TiffCompression, WebpKind};
 use darkroot_raw::Decoder;
 
 use super::Engine;
@@ -50,6 +50,10 @@ pub(super) const CHROMA: [Word<ChromaSubsampling>; 3] = [
     word("444", ChromaSubsampling::S444, ""),
     word("422", ChromaSubsampling::S422, ""),
     word("420", ChromaSubsampling::S420, ""),
+];
+pub(super) const WEBP: [Word<WebpKind>; 2] = [
+    word("lossless", WebpKind::Lossless, ""),
+    word("lossy", WebpKind::Lossy, "By the quality, with half the colour resolution"),
 ];
 pub(super) const SWITCH: [Word<bool>; 2] = [word("true", true, ""), word("false", false, "")];
 pub(super) const LOOKS: [Word<Look>; 6] = [
