@@ -6,7 +6,7 @@
 //! | PNG | 8, 16 | any with an ICC profile | lossless |
 //! | TIFF | 8, 16, 32 (float) | any, also camera RGB | none or deflate |
 //! | WebP | 8 | any with an ICC profile | lossless or lossy |
-//! | AVIF | 8 (stored as 10) | sRGB | lossy |
+//! | AVIF | 8 (stored as 10) | any, by numbers or ICC profile | lossy |
 //! | OpenEXR | 32 (float) | linear ones, also camera RGB | PIZ, lossless |
 //! | JPEG XL | 8, 16 | all but those with a ROMM or L\* curve | lossless |
 //!

@@ -63,7 +63,7 @@ impl Default for Options {
             progressive: false,
             compression: TiffCompression::default(),
             webp: WebpKind::default(),
-            avif_speed: 9,
+            avif_speed: 10,
         }
     }
 }
