@@ -108,7 +108,14 @@ mod tests {
         for host in ["127.0.0.1:8377", "localhost:9000", "[::1]:8377", "localhost", "127.0.0.1"] {
             assert!(is_ours(host, false), "{host}");
         }
-        for host in ["", "evil.example:8377", "localhost.evil.example", "192.168.1.5:8377", "127.0.0.1.evil.example", "?"] {
+        for host in [
+            "",
+            "evil.example:8377",
+            "localhost.evil.example",
+            "192.168.1.5:8377",
+            "127.0.0.1.evil.example",
+            "?",
+        ] {
             assert!(!is_ours(host, false), "{host}");
         }
         assert!(is_ours("192.168.1.5:8377", true) && !is_ours("evil.example", true));

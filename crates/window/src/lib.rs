@@ -9,7 +9,7 @@
 //! # Ok::<(), darkroot_window::WindowError>(())
 //! ```
 //!
-//! Start with [`api`]: a file for each group of endpoints, as `docs/window.md` lists them. `guard.rs` decides which requests
+//! Start with `api/`: a file for each group of endpoints, as `docs/window.md` lists them. `guard.rs` decides which requests
 //! get there, `roots.rs` which files. The page is in `page/`.
 //!
 //! **What it does not do:** it has no colour science and no stages of its own: what it shows is what the library renders. It
@@ -35,9 +35,12 @@ mod screen;
 mod small;
 mod tally;
 
+mod running;
+mod watched;
+
 mod state;
 
-pub mod api;
+mod api;
 
 mod serve;
 mod window;

@@ -65,15 +65,15 @@ impl Roots {
     /// The name of a path, if it is below one of the folders.
     pub(crate) fn name(&self, path: &Path) -> Option<String> {
         let below = |(i, root): (usize, &PathBuf)| Some((i, path.strip_prefix(root).ok()?));
-        let (i, rest) = self.folders.iter().enumerate().filter_map(below).min_by_key(|b| b.1.components().count())?;
+        let (i, rest) =
+            self.folders.iter().enumerate().filter_map(below).min_by_key(|b| b.1.components().count())?;
         Some(format!("{i}/{}", path_text::text(rest)))
     }
 
     /// The place of a name; whether something is there is not looked at.
     pub(crate) fn place(&self, name: &str) -> Result<Place, Fault> {
-        let refused = || {
-            Fault::asked(format!("{}: lies in no folder that was opened", darkroot::quoted(name)))
-        };
+        let refused =
+            || Fault::asked(format!("{}: lies in no folder that was opened", darkroot::quoted(name)));
         let (number, rest) = name.split_once('/').unwrap_or((name, ""));
         let root = number.parse::<usize>().ok().and_then(|i| self.folders.get(i)).ok_or_else(refused)?;
         let rest = path_text::path(rest);
@@ -141,7 +141,17 @@ mod tests {
             assert_eq!(roots.file(name).unwrap().read().unwrap(), b"x", "{name}");
         }
         let absolute = format!("0/{}", base.join("secret.nef").to_str().unwrap());
-        for name in ["", "0", "0/", "2/a.nef", "0/../secret.nef", "0/./../secret.nef", "-1/a.nef", "0/roll", &absolute] {
+        for name in [
+            "",
+            "0",
+            "0/",
+            "2/a.nef",
+            "0/../secret.nef",
+            "0/./../secret.nef",
+            "-1/a.nef",
+            "0/roll",
+            &absolute,
+        ] {
             assert!(roots.file(name).is_err(), "{name}");
         }
         #[cfg(unix)]

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::setting::{Changes, Group, Kind, Setting};
 use super::key::Key;
+use super::setting::{Changes, Group, Kind, Setting};
 
 /// Where each part of the table begins, and what it is called: settings that a person looks for in one place.
 const SECTIONS: [(Key, &str); 7] = [
