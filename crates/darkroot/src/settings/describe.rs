@@ -57,13 +57,25 @@ fn about(key: Key) -> Value {
             about["range"] = json!([least, most]);
             about["unit"] = unit.into();
         }
-        Kind::Text { .. } => about["type"] = "text".into(),
+        Kind::Text { .. } => {
+            about["type"] = "text".into();
+            if let Some(most) = amount(key) {
+                about["range"] = json!([0, most]);
+            }
+        }
         Kind::File(words) => {
             about["type"] = "file".into();
             about["words"] = words.iter().map(|word| json!({ "word": word, "help": "" })).collect();
         }
     }
     about
+}
+
+/// The largest number that a setting takes beside its words, where it takes them from 0 on and few: an amount.
+fn amount(key: Key) -> Option<u8> {
+    let takes = |number: &u8| key.checked(&number.to_string()).is_ok();
+    let all: Vec<u8> = (0..=10).take_while(takes).collect();
+    all.last().copied().filter(|most| (1..10).contains(most))
 }
 
 impl Key {
@@ -92,5 +104,8 @@ mod tests {
             let setting = all.iter().find(|s| s["name"] == name).unwrap();
             assert_eq!(setting["section"], expected, "{name}");
         }
+        let ranges = all.iter().filter(|s| s["type"] == "text" && !s["range"].is_null());
+        let amounts: Vec<_> = ranges.map(|s| (s["name"].as_str().unwrap(), s["range"][1].as_u64())).collect();
+        assert_eq!(amounts, [("denoise", Some(2)), ("sharpen", Some(2))]);
     }
 }
