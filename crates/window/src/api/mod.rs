@@ -59,13 +59,14 @@ pub(crate) fn router(shared: Arc<Shared>, gate: Arc<Guard>) -> Router {
         .fallback(|| async { Fault::missing("there is no such endpoint; docs/window.md lists them") })
         .method_not_allowed_fallback(|| async { Fault::asked("this endpoint does not take that method") })
         .with_state(shared);
-    Router::new()
+    let all = Router::new()
         .nest("/api/v1", api)
         .route("/", get(|| async { page::file("") }))
         .route("/{name}", get(|Path(name): Path<String>| async move { page::file(&name) }))
-        .layer(DefaultBodyLimit::max(LARGEST_REQUEST))
         .fallback(|| async { Fault::missing("there is no such page") })
-        .layer(middleware::from_fn_with_state(gate, guard))
+        .layer(DefaultBodyLimit::max(LARGEST_REQUEST));
+    // Paths are looked at when the guard has taken the token from them.
+    Router::new().fallback_service(all).layer(middleware::from_fn_with_state(gate, guard))
 }
 
 /// Version, folders, and what became of requests for pictures.
