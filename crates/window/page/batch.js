@@ -67,25 +67,28 @@ export async function show(only, given) {
 
 async function folders() {
   const roots = await get("folders");
-  fill(parts.root, roots.map((one) => h("option", { value: one.folder, title: one.shown }, one.shown)));
+  fill(parts.root, roots.map((one) => h("option", { value: one.folder, title: one.shown }, lastOf(one.shown))));
   const found = [];
   for (const one of roots) {
     if (one.journal) found.push(one);
     for (const inner of await get("folders", { folder: one.folder })) if (inner.journal) found.push(inner);
   }
   fill(parts.watch, found.length
-    ? found.map((one) => h("button", { onclick: () => watch(one.folder) }, one.shown))
+    ? found.map((one) => h("button", { title: one.shown, onclick: () => watch(one.folder) }, lastOf(one.shown)))
     : h("p", { class: "empty-line" }, "None yet."));
 }
 
 async function list() {
   const all = await get("batch");
   fill(parts.list, all.length
-    ? all.map((one) => h("li", {}, h("button", { class: one.id === current ? "on" : "", onclick: () => follow(one.id) }, h("b", {}, one.out), h("span", {}, summary(one)))))
+    ? all.map((one) => h("li", {}, h("button", { class: one.id === current ? "on" : "", onclick: () => follow(one.id) }, h("b", { title: one.out }, h("bdi", {}, one.out)), h("span", {}, summary(one)))))
     : h("li", { class: "empty-line" }, "None yet."));
   if (current === null && all.length) follow(all[0].id);
   else if (current === null) detail(null);
 }
+
+/** The last part of a path. */
+const lastOf = (path) => path.replace(/[/\\]+$/, "").split(/[/\\]/).at(-1) || path;
 
 const PHASES = { planning: "Looking at files", running: "At work", pausing: "Finishing what is begun", paused: "Paused", done: "Done", failed: "Not run" };
 
@@ -179,7 +182,7 @@ function detail(one) {
   const mine = one.kind === "run";
   fill(parts.detail,
     h("div", { class: "head" },
-      h("h2", { title: one.out }, one.out),
+      h("h2", { title: one.out }, h("bdi", {}, one.out)),
       h("span", { class: "state", "data-phase": one.phase }, PHASES[one.phase]),
       h("span", { class: "space" }),
       mine && (one.phase === "running" || one.phase === "planning") && h("button", { onclick: () => act("pause") }, "Pause"),

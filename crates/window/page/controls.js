@@ -38,7 +38,10 @@ export class Controls {
     for (const [name, control] of this.#controls) {
       const is = words?.startsWith(`\`${name}\``) ?? false;
       control.fault(is ? words.slice(name.length + 3).trim() : "");
-      if (is) control.element.closest("details").open = true;
+      if (is) {
+        control.element.closest("details").open = true;
+        control.element.scrollIntoView({ block: "nearest" });
+      }
       found ||= is;
     }
     return found;
@@ -140,7 +143,7 @@ function fillTrack(slider, usual) {
 function amountField(setting, id, set) {
   const [least, most] = setting.range;
   const slider = h("input", { type: "range", min: least, max: most, step: 0.02, "aria-label": title(setting.name) });
-  const input = h("input", { id, type: "text", spellcheck: "false", title: setting.allowed });
+  const input = h("input", { id, type: "text", class: "amount", spellcheck: "false", title: setting.allowed });
   slider.addEventListener("input", () => { input.value = slider.value; set(String(Number(slider.value)), true); });
   slider.addEventListener("change", () => set(String(Number(slider.value))));
   slider.addEventListener("dblclick", () => set(null));

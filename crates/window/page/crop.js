@@ -46,6 +46,7 @@ export class CropTool {
 
   #listener;
   #wasStraight;
+  #ended = false;
 
   async begin() {
     this.#picture.busy = true;
@@ -66,11 +67,15 @@ export class CropTool {
   }
 
   /** Ends it, with or without what was chosen. */
-  end(yes) {
+  async end(yes) {
+    if (this.#ended) return;
+    this.#ended = true;
+    // The picture may have been turned a moment ago.
+    if (yes) await this.#measure().catch(() => {});
     this.#picture.removeEventListener("view", this.#listener);
     this.#picture.busy = false;
     this.overlay.remove();
-    if (!yes) return this.#done({ straighten: this.#wasStraight });
+    if (!yes || !this.#frame) return this.#done({ straighten: this.#wasStraight });
     const [left, top, width, height] = this.#frame.shown;
     const [x0, y0, x1, y1] = this.#box.map(Math.round);
     const isWhole = x0 <= 0 && y0 <= 0 && x1 >= width && y1 >= height;

@@ -145,7 +145,7 @@ function strip() {
   const near = at < 0 ? [] : all.slice(Math.max(0, at - 8), at + 9);
   fill(parts.strip, near.map(({ file, modified }) =>
     h("button", { class: `small ${file === files.current ? "now" : ""} ${hasDraft(file) ? "draft" : ""}`, title: baseName(file), "aria-label": baseName(file), "aria-current": file === files.current ? "true" : null, onclick: () => go.develop(file) },
-      h("img", { src: address("small", { file, v: modified }), alt: "", decoding: "async", draggable: false }))));
+      h("img", { src: address("small", { file, v: modified }), alt: "", decoding: "async", draggable: false, onerror: (e) => { e.target.dataset.broken = ""; } }))));
   parts.strip.hidden = near.length < 2;
   parts.strip.querySelector(".now")?.scrollIntoView({ block: "nearest", inline: "center" });
 }

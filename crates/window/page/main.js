@@ -5,6 +5,7 @@ import * as sheet from "./sheet.js";
 import * as develop from "./develop.js";
 import * as chart from "./chart.js";
 import * as batch from "./batch.js";
+import { h } from "./elements.js";
 import { forget } from "./edits.js";
 
 const views = { sheet, develop, chart, batch };
@@ -51,8 +52,9 @@ onConnection((there) => {
 
 async function start() {
   const [status, table] = await Promise.all([get("status"), get("settings")]);
-  document.getElementById("place").textContent = status.folders.join(", ");
-  document.getElementById("place").title = status.folders.join("\n");
+  const place = document.getElementById("place");
+  place.append(h("bdi", {}, status.folders.join(", ")));
+  place.title = status.folders.join("\n");
   sheet.build(sections.sheet, routes);
   await Promise.all([develop.build(sections.develop, routes, table), chart.build(sections.chart, routes, table)]);
   batch.build(sections.batch, routes);

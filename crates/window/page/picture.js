@@ -5,8 +5,8 @@ import { h, later } from "./elements.js";
 
 /** Side of a tile, pixels of the picture. */
 const TILE = 512;
-/** Pixels of the screen that a pixel of the fitted picture may cover until tiles take its place. */
-const COARSE = 1.05;
+/** Up to this zoom the whole picture is rendered at half its size. */
+const HALF = 0.5;
 /** While something moves, a picture of this share of the screen's pixels is enough. */
 const QUICK = 0.62;
 const LARGEST_ZOOM = 8;
@@ -190,8 +190,13 @@ export class Picture extends EventTarget {
     const { clientWidth, clientHeight } = this.element;
     const dpr = devicePixelRatio;
     if (!this.#size) return Math.max(clientWidth, clientHeight, 400) * dpr;
-    const zoom = this.#fitted ? this.#fitZoom() : Math.min(this.#zoom, this.#fitZoom() * 2);
-    return Math.max(...this.#size) * zoom * dpr;
+    // Where tiles are shown, what lies below them may be coarse.
+    return Math.max(...this.#size) * (this.#tiled ? this.#fitZoom() : this.#zoom) * dpr;
+  }
+
+  /** Whether the picture is so large that only what is seen of it is rendered sharp. */
+  get #tiled() {
+    return !this.#fitted && this.#zoom * devicePixelRatio > HALF;
   }
 
   #fitZoom() {
@@ -288,7 +293,7 @@ export class Picture extends EventTarget {
       }
       const { about } = layer;
       if (!about || this.#moving) return;
-      if (this.#zoom * about.bin * devicePixelRatio > COARSE && about.bin > 1 && !this.#fitted) layer.tiles(this.#seen(), failed);
+      if (this.#tiled && about.bin > 1) layer.tiles(this.#seen(), failed);
       else layer.noTiles();
     }
   }
