@@ -60,5 +60,5 @@ def test_collisions_are_told_before_anything_is_written(bench):
         with bench.page(window, "#batch") as page:
             page.click("#batch button:text-is('Start')")
             page.wait_for_selector("#batch .state[data-phase=failed]", timeout=60_000)
-            page.wait_for_selector("#batch .notice:has-text('more than one input')")
+            page.wait_for_selector("#batch .notice:has-text('written to one output')")
             assert list((folder / "pictures").glob("*.jpg")) == []

@@ -1,6 +1,6 @@
 """Charts: what is found, what is placed by hand, and the profile that comes of it."""
 
-from harness import shown
+from harness import shown, until
 
 
 def test_chart_by_hand_gives_the_profile_of_corners(bench):
@@ -63,6 +63,6 @@ def test_no_chart_is_said_and_placed_by_hand(bench):
             page.wait_for_selector("#chart .notice:has-text('Place it by hand')", timeout=120_000)
             assert page.locator("#chart .patch").count() == 0
             page.click("text=Place by hand")
-            page.wait_for_function("document.querySelectorAll('#chart .handle').length === 4")
+            until(page, "document.querySelectorAll('#chart .handle').length === 4")
             page.goto(window.base + "#develop=0/a.nef")
             shown(page)

@@ -3,7 +3,7 @@
 import io
 import time
 
-from harness import save, set_number, shown
+from harness import save, set_number, shown, until
 
 
 def test_open_edit_reload(bench):
@@ -18,14 +18,14 @@ def test_open_edit_reload(bench):
             page.keyboard.press("Escape")
             page.focus("#develop .stage")
             page.keyboard.press("Control+z")
-            page.wait_for_function("document.querySelector('#setting-contrast').value === '0'")
+            until(page, "document.querySelector('#setting-contrast').value === '0'")
             page.keyboard.press("Control+Shift+z")
-            page.wait_for_function("document.querySelector('#setting-contrast').value === '0.2'")
+            until(page, "document.querySelector('#setting-contrast').value === '0.2'")
             save(page)
             assert sidecar.read_text() == "exposure = 0.5\ncontrast = 0.2\n"
             page.reload()
             shown(page)
-            page.wait_for_function("document.querySelector('#setting-exposure').value === '0.5'")
+            until(page, "document.querySelector('#setting-exposure').value === '0.5'")
             page.click("[data-setting=exposure] .reset")
             save(page)
             assert sidecar.read_text() == "contrast = 0.2\n"
@@ -78,16 +78,17 @@ def test_tiles_are_the_picture(bench):
 
 def test_pixel_for_pixel(bench):
     """A double click shows pixels, tiles come; dragging moves; F fits."""
-    with bench.folder(a="a.nef") as (folder, home), bench.window(folder, home) as window:
-        with bench.page(window, "#develop=0/a.nef", width=700, height=500) as page:
+    with bench.folder() as (folder, home):
+        bench.big(folder / "a.nef")
+        with bench.window(folder, home) as window, bench.page(window, "#develop=0/a.nef", width=1100) as page:
             shown(page)
-            page.dblclick("#develop .stage", position={"x": 180, "y": 120})
+            page.dblclick("#develop .stage", position={"x": 300, "y": 200})
             page.wait_for_selector("#develop img.tile", timeout=60_000)
             assert page.inner_text("#develop .zoom") == "100 %"
             before = page.evaluate("document.querySelector('#develop .paper').style.left")
-            page.mouse.move(200, 250)
+            page.mouse.move(400, 350)
             page.mouse.down()
-            page.mouse.move(120, 250, steps=4)
+            page.mouse.move(320, 350, steps=4)
             page.mouse.up()
             assert page.evaluate("document.querySelector('#develop .paper').style.left") != before
             page.keyboard.press("f")
@@ -101,9 +102,9 @@ def test_white_balance_crop_and_spot(bench):
             shown(page)
             page.click("text=Pick grey")
             page.click("#develop .stage", position={"x": 780, "y": 410})
-            page.wait_for_function("document.querySelector('#setting-white-balance').value.startsWith('spot:')")
+            until(page, "document.querySelector('#setting-white-balance').value.startsWith('spot:')")
             page.mouse.move(500, 300)
-            page.wait_for_function("/^[-\\d. ]+$/.test(document.querySelector('.spot dd').textContent)")
+            until(page, "/^[-\\d. ]+$/.test(document.querySelector('.spot dd').textContent)")
             page.keyboard.press("c")
             page.wait_for_selector(".overlay.crop .edge[width]")
             corner = page.locator(".overlay.crop .handle").first.bounding_box()
@@ -114,7 +115,7 @@ def test_white_balance_crop_and_spot(bench):
             page.click("[aria-label='Turn a tenth of a degree clockwise']")
             with page.expect_response(lambda r: r.url.endswith("/render") and r.status == 200):
                 page.keyboard.press("Enter")
-            page.wait_for_function("/^\\d+,\\d+,\\d+,\\d+$/.test(document.querySelector('#setting-crop').value)")
+            until(page, "/^\\d+,\\d+,\\d+,\\d+$/.test(document.querySelector('#setting-crop').value)")
             save(page)
             text = (folder / "a.nef.darkroot.toml").read_text()
             assert "straighten = 0.1" in text and "crop = " in text and "spot:" in text, text
@@ -129,12 +130,12 @@ def test_before_and_after(bench):
             set_number(page, "exposure", "1")
             page.click("text=Before | after")
             page.wait_for_selector("#develop .layer.before img.whole", timeout=60_000)
-            page.wait_for_function("document.querySelector('.layer.before').style.clipPath === 'inset(0px 50% 0px 0px)'")
+            until(page, "document.querySelector('.layer.before').style.clipPath === 'inset(0px 50% 0px 0px)'")
             page.click("text=Before | after")
             page.keyboard.down("b")
-            page.wait_for_function("document.querySelector('.layer.before').style.clipPath.includes(' 0%') && !document.querySelector('.layer.before').hidden")
+            until(page, "document.querySelector('.layer.before').style.clipPath.includes(' 0%') && !document.querySelector('.layer.before').hidden")
             page.keyboard.up("b")
-            page.wait_for_function("document.querySelector('.layer.before').hidden")
+            until(page, "document.querySelector('.layer.before').hidden")
 
 
 def test_wrong_values_are_told_at_their_control(bench):
@@ -155,7 +156,7 @@ def test_contact_sheet(bench):
         for i in range(1, 1000):
             (folder / f"{i}.nef").hardlink_to(folder / "0.nef")
         with bench.window(folder, home) as window, bench.page(window, "#sheet") as page:
-            page.wait_for_function("document.querySelectorAll('.thumb.there').length >= 12", timeout=60_000)
+            until(page, "document.querySelectorAll('.thumb.there').length >= 12")
             assert page.inner_text("#sheet .tools .count") == "1,000 photographs"
             assert page.locator(".cell").count() < 120, "cells that nobody sees are there"
             page.keyboard.press("End")
@@ -166,7 +167,7 @@ def test_contact_sheet(bench):
             page.wait_for_selector(".cell.focused .stars:has-text('★★★★')")
             assert (folder / "1.nef.darkroot.toml").read_text() == 'set-tag = "xmp:Rating=4"\n'
             page.select_option("[aria-label=Rating]", "4")
-            page.wait_for_function("document.querySelectorAll('.cell').length === 1", timeout=60_000)
+            until(page, "document.querySelectorAll('.cell').length === 1")
             page.keyboard.press("Escape")
             page.select_option("[aria-label=Rating]", "0")
             page.fill("[aria-label='Find by name']", "77")
@@ -222,7 +223,7 @@ def test_ten_fast_moves_render_what_is_seen_last(bench):
                 slider.dispatchEvent(new Event('change'));
             }""")
             page.wait_for_timeout(1500)
-            page.wait_for_function("document.querySelector('#setting-exposure').value === '1'")
+            until(page, "document.querySelector('#setting-exposure').value === '1'")
             assert most[0] <= 2, f"{most[0]} requests at once"
 
 
@@ -245,7 +246,7 @@ def test_two_tabs(bench):
             set_number(first, "exposure", "0.6")
             first.click("#develop button:text-is('Save')")
             first.click("text=Load theirs")
-            first.wait_for_function("document.querySelector('#setting-exposure').value === '0.7'")
+            until(first, "document.querySelector('#setting-exposure').value === '0.7'")
 
 
 def test_broken_file(bench):

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -62,9 +63,8 @@ class Window:
 class Bench:
     """What a test works with: a program, a browser, a folder that is gone afterwards."""
 
-    def __init__(self, program, browser):
-        self.program, self.browser = str(program), browser
-        self.complaints = []
+    def __init__(self, program, make_raw, browser):
+        self.program, self.make_raw, self.browser = program, make_raw, browser
 
     @contextlib.contextmanager
     def folder(self, **files):
@@ -77,6 +77,11 @@ class Bench:
                 (folder / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(SAMPLE, folder / name)
             yield folder, home
+
+    def big(self, path):
+        """Writes a simulated photograph that is larger than the screen."""
+        size = ["--width", "2400", "--height", "1600"]
+        subprocess.run([self.make_raw, "--format", "nef", *size, "--out", path], check=True, capture_output=True)
 
     @contextlib.contextmanager
     def window(self, folder, home, *arguments):
@@ -113,6 +118,14 @@ def set_number(page, name, value):
     with page.expect_response(lambda r: r.url.endswith("/render") and r.status == 200, timeout=60_000):
         page.fill(f"#setting-{name}", value)
         page.press(f"#setting-{name}", "Enter")
+
+
+def until(page, condition, seconds=60):
+    """Waits until JavaScript is true. The page's policy lets nothing be evaluated in it, so this asks from outside."""
+    end = time.time() + seconds
+    while not page.evaluate(condition):
+        assert time.time() < end, f"never true: {condition}"
+        page.wait_for_timeout(30)
 
 
 def save(page):

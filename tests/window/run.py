@@ -1,4 +1,5 @@
-"""Tests of the window in a real browser: `python tests/window/run.py PROGRAM [WORD ...]`.
+"""Tests of the window in a real browser: `python tests/window/run.py PROGRAM MAKE_RAW [WORD ...]`. MAKE_RAW is the example of
+`crates/simulate`.
 
 Runs each function `test_...` of the files beside this one whose name has one of the words. Needs Playwright, Pillow and a
 Chromium (`CHROMIUM`, or one on the path); where one is not there, says so and passes.
@@ -12,7 +13,7 @@ from harness import Bench, chromium
 
 
 def main():
-    program, words = sys.argv[1], sys.argv[2:]
+    program, make_raw, words = sys.argv[1], sys.argv[2], sys.argv[3:]
     try:
         from playwright.sync_api import sync_playwright
 
@@ -39,7 +40,7 @@ def main():
                 browser = launched(playwright)
             start = time.time()
             try:
-                test(Bench(program, browser))
+                test(Bench(program, make_raw, browser))
                 print(f"ok      {name} ({time.time() - start:.1f} s)", flush=True)
             except Exception:
                 failed += 1

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use anyhow::{Context, Result};
 use clap::Args;
 use darkroot::ProfileStore;
-use darkroot_batch::{CrewOptions, Wording, system};
+use darkroot_batch::{CrewOptions, system};
 use darkroot_window::{Options, Window};
 
 use crate::{Common, Outcome, batch};
@@ -40,13 +40,7 @@ impl Open {
     pub(crate) fn run(self, common: Common) -> Result<Outcome> {
         let program = std::env::current_exe().context("this program cannot find itself to start workers")?;
         let threads = common.threads.unwrap_or_else(system::threads).max(1);
-        let wording = Wording::new(crate::hint::words);
-        let crew = CrewOptions {
-            jobs: threads,
-            threads,
-            wording: wording.clone(),
-            ..CrewOptions::new(program, vec!["worker".into()])
-        };
+        let crew = CrewOptions { jobs: threads, threads, ..CrewOptions::new(program, vec!["worker".into()]) };
         let store = batch::store();
         for fault in &store.faults {
             crate::say(format_args!("warning: {fault}; it is not used"));
@@ -57,7 +51,6 @@ impl Open {
             store,
             profiles: ProfileStore::user_folder(),
             crew,
-            wording,
             ..Options::of(self.inputs)
         })?;
         if window.is_open_to_others() {

@@ -307,7 +307,7 @@ export class Picture extends EventTarget {
       this.zoomTo(this.#zoom * by, [event.clientX - box.left, event.clientY - box.top]);
     }, { passive: false });
     element.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0 || this.busy || event.target.closest(".handle, .split-handle")) return;
+      if (event.button !== 0 || this.busy || event.target.closest(".handle, .patch, .split-handle")) return;
       const from = [event.clientX, event.clientY];
       const at = this.#at;
       let far = false;

@@ -13,6 +13,7 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const FILES: &[(&str, &str, &str)] = &[
     ("", HTML, include_str!("../page/index.html")),
     ("style.css", STYLE, include_str!("../page/style.css")),
+    ("icon.svg", "image/svg+xml", include_str!("../page/icon.svg")),
     ("main.js", SCRIPT, include_str!("../page/main.js")),
     ("server.js", SCRIPT, include_str!("../page/server.js")),
     ("elements.js", SCRIPT, include_str!("../page/elements.js")),

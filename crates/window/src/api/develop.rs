@@ -182,8 +182,14 @@ pub(crate) async fn frame(
         canvas.recipe.geometry.perspective = None;
         let (canvas, shown) = (size(&canvas)?, size(&all)?);
         let middle = |inner: Size| {
-            let start = |whole: usize, part: usize| whole.saturating_sub(part) / 2;
-            [start(canvas.width, inner.width), start(canvas.height, inner.height), inner.width, inner.height]
+            // A part of a turned picture may begin between two pixels: whole ones that lie in it.
+            let within = |whole: usize, part: usize| {
+                let start = whole.saturating_sub(part).div_ceil(2);
+                (start, (whole + part) / 2 - start)
+            };
+            let (x, width) = within(canvas.width, inner.width);
+            let (y, height) = within(canvas.height, inner.height);
+            [x, y, width, height]
         };
         let crop = match settings.recipe.crop {
             Crop::Rect { x, y, width, height } => [x, y, width, height],
