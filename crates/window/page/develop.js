@@ -152,6 +152,7 @@ function strip() {
 
 function set(name, text, live = false) {
   if (!draft) return;
+  picture.mayBeNoisy = !/noise|pixels/.test(name);
   draft.set({ [name]: text });
   if (!live) draft.commit();
 }

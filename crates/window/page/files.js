@@ -3,7 +3,9 @@
 import { get, post } from "./server.js";
 import { baseName } from "./elements.js";
 
-const AT_ONCE = 24;
+const AT_ONCE = 12;
+/** Pictures that are seen come before what is known of files, milliseconds. */
+const HEAD_START = 250;
 
 class Files extends EventTarget {
   /** Every file: { file, size, modified }. */
@@ -53,6 +55,7 @@ class Files extends EventTarget {
     if (this.#reading) return;
     this.#reading = true;
     try {
+      await new Promise((done) => setTimeout(done, HEAD_START));
       while (this.#wanted.length) {
         const files = this.#wanted.splice(0, AT_ONCE);
         const facts = await post("facts", { files });

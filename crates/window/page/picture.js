@@ -26,15 +26,15 @@ class Layer {
   }
 
   /** Renders the whole so that its longer side has so many pixels, and takes tiles away that are of yesterday. */
-  async whole(longest) {
+  async whole(longest, quick = false) {
     this.#dropTiles();
     this.#busy?.abort();
     const control = (this.#busy = new AbortController());
     const place = `${TAB}:${this.name}`;
-    const { image, about } = await render({ ...this.asked(), place, longest: Math.ceil(longest) }, control.signal);
+    const { image, about } = await render({ ...this.asked(), place, longest: Math.ceil(longest), quick }, control.signal);
     if (control.signal.aborted) return null;
     this.about = about;
-    this.#wanted = longest;
+    this.#wanted = quick ? 0 : longest;
     image.className = "whole";
     image.alt = "";
     image.draggable = false;
@@ -46,7 +46,7 @@ class Layer {
 
   /** Whether the whole has enough pixels for that size. */
   isFine(longest) {
-    return this.about !== null && (this.about.bin === 1 || this.#wanted >= longest);
+    return this.about !== null && this.#wanted > 0 && (this.about.bin === 1 || this.#wanted >= longest);
   }
 
   /** Asks for the tiles of a part of the picture that are missing, from its middle outwards. */
@@ -136,6 +136,8 @@ export class Picture extends EventTarget {
   }
 
   #settle;
+  /** Whether what changes has nothing to do with noise. */
+  mayBeNoisy = true;
 
   get size() {
     return this.#size;
@@ -160,19 +162,13 @@ export class Picture extends EventTarget {
   /** Renders anew; quickly, if more is to follow at once. */
   async update(quick = false) {
     try {
-      const longest = this.#longest() * (quick ? QUICK : 1);
-      if (!this.#size) await this.#first(longest);
-      else await this.main.whole(longest);
+      await this.main.whole(this.#longest() * (quick ? QUICK : 1), quick && this.mayBeNoisy);
       if (!this.main.about) return;
       this.#take(this.main.about);
       this.#settle();
     } catch (error) {
       if (error.name !== "AbortError" && error.status !== 409) this.dispatchEvent(new CustomEvent("fault", { detail: error }));
     }
-  }
-
-  async #first(longest) {
-    await this.main.whole(longest);
   }
 
   #take(about) {

@@ -1,6 +1,6 @@
 //! Pictures for a screen: which settings they are rendered with, and their bytes.
 
-use darkroot::{EncodeOptions, Format, Key, Settings};
+use darkroot::{ChromaSubsampling, EncodeOptions, Format, Key, Settings};
 use darkroot_colour::{RgbSpace, Vector3, white};
 use darkroot_develop::{Bits, Look, OutputSpace};
 use darkroot_photo::{Metadata, Picture, PictureSpace, Samples};
@@ -73,18 +73,25 @@ pub(crate) enum Sent {
 
 /// Quality of JPEG: nothing of it is seen at the size of a screen.
 const QUALITY: u8 = 93;
+/// Quality for a picture that is seen for a moment.
+const QUICK_QUALITY: u8 = 85;
 
-/// The bytes of a picture, with its colour space, and their kind.
+/// The bytes of a picture, with its colour space, and their kind. One that is seen for a moment only may be coarser.
 pub(crate) fn bytes(
     picture: &Picture,
     sent: Sent,
+    quick: bool,
 ) -> Result<(Vec<u8>, &'static str), darkroot_encode::Error> {
     let (format, kind) = match sent {
         Sent::Jpeg => (Format::Jpeg, "image/jpeg"),
         Sent::Png => (Format::Png, "image/png"),
     };
     let mut out = std::io::Cursor::new(Vec::new());
-    let options = EncodeOptions { quality: QUALITY, ..EncodeOptions::default() };
+    let (quality, subsampling) = match quick {
+        true => (QUICK_QUALITY, ChromaSubsampling::S420),
+        false => (QUALITY, ChromaSubsampling::S444),
+    };
+    let options = EncodeOptions { quality, subsampling, ..EncodeOptions::default() };
     darkroot_encode::write(picture, format, &options, &Metadata::default(), &mut out)?;
     Ok((out.into_inner(), kind))
 }

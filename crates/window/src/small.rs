@@ -15,7 +15,7 @@ use crate::screen::{self, Gamut, Sent};
 use crate::state::locked;
 
 /// Longest side of a small picture, pixels.
-const LONGEST: u32 = 480;
+const LONGEST: u32 = 640;
 /// An embedded picture of at least that side is looked for, pixels.
 const ENOUGH: u32 = 300;
 /// Bytes of all that are kept.
@@ -99,7 +99,7 @@ fn embedded(bytes: &[u8]) -> Option<Vec<u8>> {
         samples[at..at + 3].copy_from_slice(&pixel.0);
     }
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
-    Some(screen::bytes(&picture, Sent::Jpeg).ok()?.0)
+    Some(screen::bytes(&picture, Sent::Jpeg, false).ok()?.0)
 }
 
 /// What the engine makes of it with the defaults.
@@ -110,7 +110,7 @@ fn developed(bytes: &[u8], place: &Place, store: &ProfileStore) -> Result<Vec<u8
         Fault::unusable(darkroot::Error::Raw { path: place.path.clone(), source }.to_string())
     })?;
     let plan = photo.plan(&photo.analyse_as_asked(), store, &settings).map_err(|e| fault(e.to_string()))?;
-    let view = plan.whole(Scale::to_show(plan.size(), LONGEST as usize / 2));
+    let view = plan.whole(Scale::to_show(plan.size(), ENOUGH as usize));
     let picture = plan.render(view, &Cancel::default()).map_err(|e| fault(e.to_string()))?;
-    screen::bytes(&picture, Sent::Jpeg).map(|(bytes, _)| bytes).map_err(|e| fault(e.to_string()))
+    screen::bytes(&picture, Sent::Jpeg, false).map(|(bytes, _)| bytes).map_err(|e| fault(e.to_string()))
 }
