@@ -11,6 +11,7 @@ mod evaluate;
 mod hint;
 mod inspect;
 mod interrupt;
+mod open;
 mod out;
 mod picture;
 mod profile;
@@ -90,6 +91,7 @@ enum Command {
     Develop(develop::Develop),
     Batch(Box<batch::Batch>),
     Watch(Box<batch::Watch>),
+    Open(open::Open),
     Inspect(inspect::Inspect),
     Recipe(recipe::Recipe),
     Profile(profile::Profile),
@@ -135,6 +137,7 @@ fn main() -> ExitCode {
         Command::Develop(command) => command.run(common),
         Command::Batch(command) => command.run(common),
         Command::Watch(command) => command.run(common),
+        Command::Open(command) => command.run(common),
         Command::Inspect(command) => command.run(common),
         Command::Recipe(command) => command.run(),
         Command::Profile(command) => command.run(common),

@@ -42,8 +42,12 @@ pub struct FoundCharts {
 /// # Errors
 /// A file that cannot be read.
 pub fn find_charts(path: &Path, layouts: &[ChartLayout], settings: &Settings) -> Result<FoundCharts, Error> {
-    let view = View::open_any(path, settings)?;
-    Ok(FoundCharts { size: view.size, search: search(&view, layouts) })
+    Ok(find_in(&View::open_any(path, settings)?, layouts))
+}
+
+/// Looks for charts in a file that is open already.
+pub fn find_in(view: &View, layouts: &[ChartLayout]) -> FoundCharts {
+    FoundCharts { size: view.size, search: search(view, layouts) }
 }
 
 /// Charts in pixels of the developed picture.

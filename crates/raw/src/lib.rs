@@ -20,7 +20,7 @@ pub mod limits;
 pub use limits::Limits;
 
 pub mod preview;
-pub use preview::{Preview, decode_preview, preview};
+pub use preview::{Preview, decode_preview, preview, preview_to_show};
 
 pub mod samples;
 pub use samples::samples_hash;

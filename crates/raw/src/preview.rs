@@ -28,15 +28,23 @@ pub struct Preview {
 /// # Errors
 /// [`Error::NotRaw`] or [`Error::Damaged`] when the container cannot be read.
 pub fn preview(bytes: &[u8]) -> Result<Option<Preview>, Error> {
+    preview_to_show(bytes, u32::MAX)
+}
+
+/// The smallest embedded JPEG whose longer side has at least so many pixels, or the largest where none has; as [`preview`].
+///
+/// # Errors
+/// As [`preview`].
+pub fn preview_to_show(bytes: &[u8], longest: u32) -> Result<Option<Preview>, Error> {
     screen::screen(bytes, &Limits::default())?;
     guarded("flashraw", || {
         let raw = FlashRaw::open(bytes).map_err(|e| crate::flash::error(&e))?;
-        let largest = raw
-            .previews()
-            .iter()
-            .filter(|p| p.encoding == PreviewEncoding::Jpeg)
-            .max_by_key(|p| (u64::from(p.width) * u64::from(p.height), p.length));
-        let Some(info) = largest else { return Ok(None) };
+        let jpegs = || raw.previews().iter().filter(|p| p.encoding == PreviewEncoding::Jpeg);
+        let enough = jpegs()
+            .filter(|p| p.width.max(p.height) >= longest)
+            .min_by_key(|p| (u64::from(p.width) * u64::from(p.height), p.length));
+        let largest = || jpegs().max_by_key(|p| (u64::from(p.width) * u64::from(p.height), p.length));
+        let Some(info) = enough.or_else(largest) else { return Ok(None) };
         let jpeg = raw.preview_bytes(info).map_err(|e| crate::flash::error(&e))?;
         // A preview is shown as it is: make sure that it is one.
         if !jpeg.starts_with(&[0xff, 0xd8]) {

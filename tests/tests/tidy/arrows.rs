@@ -9,7 +9,7 @@ use darkroot_tests::root;
 use crate::files;
 
 /// Which of our crates each crate uses, as `docs/architecture.md` has it. Tests and benches may use any.
-const ARROWS: [(&str, &[&str]); 15] = [
+const ARROWS: [(&str, &[&str]); 16] = [
     ("colour", &[]),
     ("photo", &["colour"]),
     ("sandbox", &[]),
@@ -23,8 +23,10 @@ const ARROWS: [(&str, &[&str]); 15] = [
     ("calibrate", &["chart", "colour", "photo", "profile"]),
     ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "lens", "photo", "profile", "raw"]),
     ("batch", &["colour", "darkroot", "develop", "encode", "photo", "profile", "raw", "sandbox"]),
+    // It shows pictures, charts and profiles, and encodes views for the browser.
+    ("window", &["batch", "chart", "colour", "darkroot", "develop", "encode", "photo", "raw"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
-    ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw", "sandbox"]),
+    ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw", "sandbox", "window"]),
     ("tests", &["chart", "colour", "darkroot", "develop", "lens", "photo", "profile", "simulate"]),
 ];
 

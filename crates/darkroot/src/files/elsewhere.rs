@@ -89,6 +89,20 @@ pub(super) fn open_below(root: &Path, path: &Path) -> io::Result<File> {
     special::open_to_append(path)
 }
 
+/// Opens a regular file below a folder to read it; links are not followed.
+pub(super) fn read_below(root: &Path, path: &Path) -> io::Result<File> {
+    let parts = path.strip_prefix(root).map_err(|_| io::ErrorKind::InvalidFilename)?;
+    let mut at = root.to_owned();
+    for part in parts.components() {
+        let Component::Normal(part) = part else { return Err(io::ErrorKind::InvalidFilename.into()) };
+        at.push(part);
+        if at.is_symlink() {
+            return Err(Special::Linked { path: at }.into());
+        }
+    }
+    special::open(path)
+}
+
 /// Removes what an unfinished run left in a folder below another, and the folder if nothing else is in it.
 pub(super) fn clear(root: &Path, folder: &Path) -> io::Result<()> {
     if folder.symlink_metadata().is_err() {

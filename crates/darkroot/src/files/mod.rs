@@ -165,6 +165,19 @@ pub fn open_below(root: &Path, path: &Path) -> io::Result<File> {
     system::open_below(root, path)
 }
 
+/// Reads an input file below a folder, without following links below the folder.
+///
+/// # Errors
+/// As [`read`]; a link, or a path that is not below the folder.
+pub fn read_below(root: &Path, path: &Path) -> Result<Vec<u8>, Error> {
+    let attempt = || {
+        let file = system::read_below(root, path)?;
+        let size = file.metadata()?.len();
+        bounded(file, size, LARGEST)
+    };
+    attempt().map_err(|e| Error::read(path, e))
+}
+
 /// Removes unfinished outputs that a run left in a folder below another, and the folder if it is empty then.
 ///
 /// # Errors

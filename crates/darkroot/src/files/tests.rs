@@ -109,6 +109,23 @@ mod on_unix {
     }
 
     #[test]
+    fn nothing_is_read_through_a_link_or_from_above() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("root");
+        fs::create_dir_all(root.join("in")).unwrap();
+        fs::write(root.join("in/a"), "a").unwrap();
+        fs::write(folder.path().join("secret"), "s").unwrap();
+        symlink(folder.path().join("secret"), root.join("file")).unwrap();
+        symlink(folder.path(), root.join("folder")).unwrap();
+        assert_eq!(read_below(&root, &root.join("in/a")).unwrap(), b"a");
+        for path in ["file", "folder/secret", "in/../../secret", "none", "none/a", "in"] {
+            assert!(read_below(&root, &root.join(path)).is_err(), "{path}");
+        }
+        assert!(read_below(&root, &folder.path().join("secret")).is_err());
+        assert!(!root.join("none").exists());
+    }
+
+    #[test]
     fn only_unfinished_outputs_are_cleared_away() {
         let folder = tempfile::tempdir().unwrap();
         let (root, foreign) = (folder.path().join("out"), folder.path().join("foreign"));

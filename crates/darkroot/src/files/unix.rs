@@ -194,6 +194,19 @@ fn place(folder: &Path) -> io::Result<OwnedFd> {
 
 /// A folder below another; folders that are missing are made, links are not followed.
 fn below(root: &Path, folder: &Path) -> io::Result<OwnedFd> {
+    descend(root, folder, |at, part| match mkdirat(at, part, FOLDER) {
+        // Another worker was faster.
+        Ok(()) | Err(Errno::EXIST) => Ok(()),
+        Err(error) => Err(error.into()),
+    })
+}
+
+/// As [`below`]; `make` is asked for what is missing.
+fn descend(
+    root: &Path,
+    folder: &Path,
+    make: impl Fn(&OwnedFd, &OsStr) -> io::Result<()>,
+) -> io::Result<OwnedFd> {
     let mut at = place(root)?;
     let parts = folder.strip_prefix(root).map_err(|_| io::ErrorKind::InvalidFilename)?;
     let mut path = root.to_owned();
@@ -205,11 +218,7 @@ fn below(root: &Path, folder: &Path) -> io::Result<OwnedFd> {
         path.push(part);
         at = match openat(&at, part, PLACE | OFlags::NOFOLLOW, Mode::empty()) {
             Err(Errno::NOENT) => {
-                match mkdirat(&at, part, FOLDER) {
-                    // Another worker was faster.
-                    Ok(()) | Err(Errno::EXIST) => {}
-                    Err(error) => return Err(error.into()),
-                }
+                make(&at, part)?;
                 opened(openat(&at, part, PLACE | OFlags::NOFOLLOW, Mode::empty()), &path)?
             }
             result => opened(result, &path)?,
@@ -249,6 +258,14 @@ pub(super) fn open_below(root: &Path, path: &Path) -> io::Result<File> {
         Err(Errno::LOOP) => Err(Special::Linked { path: path.to_owned() }.into()),
         Err(error) => Err(error.into()),
     }
+}
+
+/// Opens a regular file below a folder to read it; links are not followed.
+pub(super) fn read_below(root: &Path, path: &Path) -> io::Result<File> {
+    let name = path.file_name().ok_or(io::ErrorKind::IsADirectory)?;
+    let folder = descend(root, super::folder_of(path), |_, _| Err(io::ErrorKind::NotFound.into()))?;
+    let flags = OFlags::RDONLY | OFlags::CLOEXEC | OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::NOCTTY;
+    special::checked(opened(openat(&folder, name, flags, Mode::empty()), path)?.into())
 }
 
 /// Removes what an unfinished run left in a folder below another, and the folder if nothing else is in it.

@@ -4,6 +4,7 @@
 
 mod exif;
 mod iptc;
+mod rating;
 mod sidecar;
 mod spaces;
 mod tags;
@@ -16,6 +17,7 @@ use darkroot_photo::Capture;
 use darkroot_photo::metadata::{Directory, Field, Metadata, Value, tag};
 
 use crate::VERSION;
+pub use rating::{rating, with_rating};
 pub(crate) use sidecar::beside;
 pub(crate) use spaces::DARKROOT;
 use spaces::{DC, EXIF, XMP, is_of_the_raw_file};

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use darkroot_encode::Format;
 
+use super::written::written;
 use super::{Layer, Origin, RecipeError};
 use crate::metadata::{self, Xmp};
 use crate::naming::{NamingError, Target};
@@ -152,18 +153,6 @@ impl Effective {
         }
         out
     }
-}
-
-/// A value as TOML has it.
-fn written(key: Key, text: &str) -> String {
-    let bare = key.is_switch() || key.is_number() && text.parse::<f64>().is_ok_and(f64::is_finite);
-    if bare {
-        return text.to_owned();
-    }
-    // A recipe may be put anywhere, and what is relative in it is relative to its place.
-    let absolute = key.is_file(text).then(|| std::path::absolute(text).ok()).flatten();
-    let text = absolute.as_deref().and_then(Path::to_str).unwrap_or(text);
-    toml::Value::from(text).to_string()
 }
 
 #[cfg(test)]

@@ -75,6 +75,21 @@ impl Layer {
         Ok(layer)
     }
 
+    /// What the sidecar of a raw file says, or shall say.
+    ///
+    /// # Errors
+    /// A text that is no value of its key.
+    pub fn sidecar(
+        input: &Path,
+        values: impl IntoIterator<Item = (Key, String)>,
+    ) -> Result<Self, RecipeError> {
+        let mut layer = Self::empty(Origin::Sidecar(super::sidecar(input)));
+        for (key, text) in values {
+            layer.set(key, &text).map_err(|wrong| RecipeError::Flag { key, wrong })?;
+        }
+        Ok(layer)
+    }
+
     pub(super) fn empty(origin: Origin) -> Self {
         Self { origin, values: BTreeMap::new() }
     }

@@ -19,6 +19,14 @@ pub fn sidecar(input: &Path) -> PathBuf {
     name.into()
 }
 
+/// What the sidecar of a raw file says, if there is one.
+///
+/// # Errors
+/// It cannot be read or is wrong.
+pub fn edits(input: &Path) -> Result<Option<Layer>, RecipeError> {
+    file::read_if_there(&sidecar(input), Origin::Sidecar)
+}
+
 /// Everything that can say something about a file. What folders say is read once; a clone that was made before
 /// the first file reads it again.
 #[derive(Debug, Clone)]
@@ -52,12 +60,19 @@ impl Layers {
     /// # Errors
     /// A `darkroot.toml` above it, or one of its sidecars, cannot be read or is wrong.
     pub fn for_file(&mut self, input: &Path) -> Result<Effective, RecipeError> {
+        let edits = if self.folders { edits(input)? } else { None };
+        self.for_file_with(input, edits.as_ref())
+    }
+
+    /// What would hold for a file if this were its sidecar.
+    ///
+    /// # Errors
+    /// As [`Layers::for_file`].
+    pub fn for_file_with(&mut self, input: &Path, edits: Option<&Layer>) -> Result<Effective, RecipeError> {
         let folder = input.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut effective = self.for_folder(folder)?;
-        if self.folders
-            && let Some(layer) = file::read_if_there(&sidecar(input), Origin::Sidecar)?
-        {
-            effective.lay(&layer);
+        if let Some(layer) = edits {
+            effective.lay(layer);
         }
         if self.folders {
             effective.read_sidecar(input)?;

@@ -21,7 +21,10 @@ pub mod layer;
 pub use layer::{Layer, Origin};
 
 pub mod layers;
-pub use layers::{FOLDER_FILE, Layers, sidecar};
+pub use layers::{FOLDER_FILE, Layers, edits, sidecar};
+
+pub mod written;
+pub use written::write_sidecar;
 
 pub mod effective;
 pub use effective::Effective;

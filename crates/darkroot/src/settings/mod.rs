@@ -21,6 +21,9 @@ pub use table::SETTINGS;
 pub mod key;
 pub use key::Key;
 
+mod describe;
+pub use describe::describe;
+
 pub mod text;
 pub use text::NotAValue;
 pub(crate) use text::is_file_name;

@@ -93,16 +93,31 @@ pub fn open(
 ) -> Result<(Shot, View), Error> {
     let view =
         if options.allow_rendered { View::open_any(path, settings)? } else { View::open(path, settings)? };
-    let place = locate(&view, layout, options).map_err(|e| Error::chart(path, e))?;
+    let shot = judged(path, &view, layout, reference, options, settings)?;
+    Ok((shot, view))
+}
+
+/// As [`open`], for a shot that is open already: finds and measures the chart, and checks whether it is good enough.
+///
+/// # Errors
+/// As [`open`].
+pub fn judged(
+    path: &Path,
+    view: &View,
+    layout: &ChartLayout,
+    reference: &Reference,
+    options: &ShotOptions,
+    settings: &Settings,
+) -> Result<Shot, Error> {
+    let place = locate(view, layout, options).map_err(|e| Error::chart(path, e))?;
     let chart = Chart::new(layout, reference).map_err(|e| Error::chart(path, e))?;
-    let dark = options.dark.as_ref().map(|file| companion(file, &view, settings)).transpose()?;
-    let flat = options.flat.as_ref().map(|file| companion(file, &view, settings)).transpose()?;
+    let dark = options.dark.as_ref().map(|file| companion(file, view, settings)).transpose()?;
+    let flat = options.flat.as_ref().map(|file| companion(file, view, settings)).transpose()?;
     let companions = Companions {
         dark: dark.as_ref().map(View::sensor_light),
         flat: flat.as_ref().map(View::sensor_light),
     };
-    let shot = measured(path, &view, place, &chart, companions, options)?;
-    Ok((shot, view))
+    measured(path, view, place, &chart, companions, options)
 }
 
 fn locate(view: &View, layout: &ChartLayout, options: &ShotOptions) -> Result<Place, ChartError> {

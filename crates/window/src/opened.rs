@@ -1,0 +1,115 @@
+//! Photographs that are held decoded, so that a slider need not wait for a decoder.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
+
+use darkroot::{Analysis, Photo, ProfileStore, Settings};
+use darkroot_batch::facts::modified;
+
+use crate::fault::Fault;
+use crate::roots::Place;
+use crate::state::locked;
+
+/// Photographs held at once, at most.
+const PHOTOS: usize = 3;
+/// Samples of all of them together, at most: 250 million are 0.5 GB.
+const SAMPLES: usize = 250_000_000;
+
+/// A photograph, decoded and looked at.
+pub(crate) struct Open {
+    pub(crate) photo: Photo,
+    pub(crate) analysis: Analysis,
+    /// What its picture was developed from.
+    pub(crate) path: PathBuf,
+}
+
+/// A file as it was when it was read, and how. Another state of it, or another decoder, is another photograph.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Identity {
+    path: PathBuf,
+    size: u64,
+    modified: i64,
+    rawloader: bool,
+    from_preview: bool,
+}
+
+/// A photograph that is held, or being decoded: who comes second waits for the first.
+type Slot = Arc<OnceLock<Result<Arc<Open>, Arc<str>>>>;
+
+/// Photographs that are held, the newest first.
+#[derive(Default)]
+pub(crate) struct Opened(Mutex<VecDeque<(Identity, Slot)>>);
+
+impl Opened {
+    /// The photograph of a file, decoded as the settings ask.
+    pub(crate) fn open(
+        &self,
+        place: &Place,
+        store: &ProfileStore,
+        settings: &Settings,
+    ) -> Result<Arc<Open>, Fault> {
+        let identity = identity(&place.path, settings)?;
+        let slot = {
+            let mut held = locked(&self.0);
+            let known = held.iter().position(|(of, _)| *of == identity);
+            let entry =
+                known.and_then(|i| held.remove(i)).unwrap_or_else(|| (identity.clone(), Slot::default()));
+            let slot = Arc::clone(&entry.1);
+            held.push_front(entry);
+            shorten(&mut held);
+            slot
+        };
+        let opened = slot
+            .get_or_init(|| decode(place, store, settings).map(Arc::new).map_err(|e| e.to_string().into()));
+        opened.clone().map_err(|words| {
+            // It may be another file next time.
+            locked(&self.0).retain(|(of, _)| *of != identity);
+            Fault::unusable(&*words)
+        })
+    }
+}
+
+/// Lets go of the photographs that were not looked at for the longest time.
+fn shorten(held: &mut VecDeque<(Identity, Slot)>) {
+    let samples = |slot: &Slot| match slot.get() {
+        Some(Ok(open)) => {
+            let counts = &open.photo.capture().counts;
+            counts.size().area() * counts.layout().planes()
+        }
+        _ => 0,
+    };
+    let mut sum = 0;
+    let mut count = 0;
+    held.retain(|(_, slot)| {
+        sum += samples(slot);
+        count += 1;
+        count == 1 || (count <= PHOTOS && sum <= SAMPLES)
+    });
+}
+
+fn identity(path: &Path, settings: &Settings) -> Result<Identity, Fault> {
+    let data = std::fs::metadata(path)
+        .map_err(|e| Fault::missing(format!("{}: cannot be read: {e}", darkroot::shown(path))))?;
+    Ok(Identity {
+        path: path.to_owned(),
+        size: data.len(),
+        modified: modified(&data),
+        rawloader: settings.decoder == darkroot::Decoder::Rawloader,
+        from_preview: settings.from_preview,
+    })
+}
+
+fn decode(place: &Place, store: &ProfileStore, settings: &Settings) -> Result<Open, darkroot::Error> {
+    let bytes = place.read()?;
+    let path = place.path.clone();
+    let of_raw = |source| darkroot::Error::Raw { path: path.clone(), source };
+    let photo = if settings.from_preview {
+        let photo = Photo::open_preview(&bytes, &settings.limits).map_err(of_raw)?;
+        photo.ok_or_else(|| darkroot::Error::NoPreview { path: path.clone() })?
+    } else {
+        Photo::open_for(&bytes, store, settings).map_err(of_raw)?
+    };
+    let analysis = photo.analyse_as_asked();
+    Ok(Open { photo, analysis, path })
+}

@@ -1,0 +1,39 @@
+//! The page: every file of it is in the program.
+
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+
+use crate::fault::Fault;
+
+const HTML: &str = "text/html; charset=utf-8";
+const STYLE: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// Name, kind and text of each file.
+const FILES: &[(&str, &str, &str)] = &[
+    ("", HTML, include_str!("../page/index.html")),
+    ("style.css", STYLE, include_str!("../page/style.css")),
+    ("icon.svg", "image/svg+xml", include_str!("../page/icon.svg")),
+    ("main.js", SCRIPT, include_str!("../page/main.js")),
+    ("server.js", SCRIPT, include_str!("../page/server.js")),
+    ("elements.js", SCRIPT, include_str!("../page/elements.js")),
+    ("sheet.js", SCRIPT, include_str!("../page/sheet.js")),
+    ("files.js", SCRIPT, include_str!("../page/files.js")),
+    ("develop.js", SCRIPT, include_str!("../page/develop.js")),
+    ("picture.js", SCRIPT, include_str!("../page/picture.js")),
+    ("controls.js", SCRIPT, include_str!("../page/controls.js")),
+    ("edits.js", SCRIPT, include_str!("../page/edits.js")),
+    ("crop.js", SCRIPT, include_str!("../page/crop.js")),
+    ("histogram.js", SCRIPT, include_str!("../page/histogram.js")),
+    ("export.js", SCRIPT, include_str!("../page/export.js")),
+    ("batch.js", SCRIPT, include_str!("../page/batch.js")),
+    ("chart.js", SCRIPT, include_str!("../page/chart.js")),
+];
+
+/// A file of the page.
+pub(crate) fn file(name: &str) -> Response {
+    match FILES.iter().find(|(known, ..)| *known == name) {
+        Some((_, kind, text)) => ([(CONTENT_TYPE, *kind)], *text).into_response(),
+        None => Fault::missing("there is no such page").into_response(),
+    }
+}

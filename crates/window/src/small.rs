@@ -1,0 +1,116 @@
+//! Small pictures for the contact sheet: what the camera embedded, else what the engine makes.
+
+use std::collections::{HashMap, VecDeque};
+use std::sync::{Arc, Mutex};
+
+use darkroot::{Cancel, Limits, Photo, ProfileStore, Scale, Settings};
+use darkroot_batch::facts::modified;
+use darkroot_colour::RgbSpace;
+use darkroot_photo::{Orientation, Picture, PictureSpace, Samples, Size};
+use image::imageops::FilterType;
+
+use crate::fault::Fault;
+use crate::roots::Place;
+use crate::screen::{self, Gamut, Sent};
+use crate::state::locked;
+
+/// Longest side of a small picture, pixels.
+const LONGEST: u32 = 640;
+/// An embedded picture of at least that side is looked for, pixels.
+const ENOUGH: u32 = 300;
+/// Bytes of all that are kept.
+const KEPT: usize = 64 << 20;
+
+/// A small picture of a file as it was.
+type Identity = (String, u64, i64);
+
+/// Small pictures that are kept, JPEG; those that were made first go first.
+#[derive(Default)]
+pub(crate) struct Smalls(Mutex<Kept>);
+
+#[derive(Default)]
+struct Kept {
+    pictures: HashMap<Identity, Arc<[u8]>>,
+    order: VecDeque<Identity>,
+    bytes: usize,
+}
+
+impl Smalls {
+    /// The small picture of a file, a JPEG in sRGB.
+    pub(crate) fn of(&self, name: &str, place: &Place, store: &ProfileStore) -> Result<Arc<[u8]>, Fault> {
+        let data = std::fs::metadata(&place.path)
+            .map_err(|e| Fault::missing(format!("{}: cannot be read: {e}", darkroot::shown(&place.path))))?;
+        let identity = (name.to_owned(), data.len(), modified(&data));
+        if let Some(picture) = locked(&self.0).pictures.get(&identity) {
+            return Ok(Arc::clone(picture));
+        }
+        let bytes = place.read().map_err(|e| Fault::unusable(e.to_string()))?;
+        let picture: Arc<[u8]> = match embedded(&bytes) {
+            Some(jpeg) => jpeg,
+            None => developed(&bytes, place, store)?,
+        }
+        .into();
+        locked(&self.0).keep(identity, &picture);
+        Ok(picture)
+    }
+}
+
+impl Kept {
+    fn keep(&mut self, identity: Identity, picture: &Arc<[u8]>) {
+        if self.pictures.insert(identity.clone(), Arc::clone(picture)).is_none() {
+            self.bytes += picture.len();
+            self.order.push_back(identity);
+        }
+        while self.bytes > KEPT {
+            let Some(first) = self.order.pop_front() else { break };
+            self.bytes -= self.pictures.remove(&first).map_or(0, |picture| picture.len());
+        }
+    }
+}
+
+/// The smallest embedded picture that is large enough, upright and no larger than it must be. `None` where there is none, or
+/// none that is sound.
+fn embedded(bytes: &[u8]) -> Option<Vec<u8>> {
+    let preview = darkroot_raw::preview_to_show(bytes, ENOUGH).ok()??;
+    let fits = preview.size.width.max(preview.size.height) <= LONGEST as usize;
+    if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
+        return Some(preview.jpeg);
+    }
+    let mut reader = image::ImageReader::new(std::io::Cursor::new(&preview.jpeg));
+    reader.set_format(image::ImageFormat::Jpeg);
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(20_000);
+    limits.max_image_height = Some(20_000);
+    reader.limits(limits);
+    let picture = reader.decode().ok()?;
+    // Fast and coarse to twice the size, then carefully.
+    let picture = if picture.width().max(picture.height()) > 4 * LONGEST {
+        picture.thumbnail(2 * LONGEST, 2 * LONGEST)
+    } else {
+        picture
+    };
+    let picture = picture.resize(LONGEST, LONGEST, FilterType::Triangle).into_rgb8();
+    let stored = Size { width: picture.width() as usize, height: picture.height() as usize };
+    let size = preview.orientation.applied_to(stored);
+    let mut samples = vec![0; 3 * size.area()];
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        let (u, v) = preview.orientation.place(x as usize, y as usize, stored);
+        let at = 3 * (v * size.width + u);
+        samples[at..at + 3].copy_from_slice(&pixel.0);
+    }
+    let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
+    Some(screen::bytes(&picture, Sent::Jpeg, false).ok()?.0)
+}
+
+/// What the engine makes of it with the defaults.
+fn developed(bytes: &[u8], place: &Place, store: &ProfileStore) -> Result<Vec<u8>, Fault> {
+    let fault = |words: String| Fault::unusable(format!("{}: {words}", darkroot::shown(&place.path)));
+    let settings = screen::shown(Settings::default(), Gamut::Srgb);
+    let photo = Photo::open(bytes, &Limits::default()).map_err(|source| {
+        Fault::unusable(darkroot::Error::Raw { path: place.path.clone(), source }.to_string())
+    })?;
+    let plan = photo.plan(&photo.analyse_as_asked(), store, &settings).map_err(|e| fault(e.to_string()))?;
+    let view = plan.whole(Scale::to_show(plan.size(), ENOUGH as usize));
+    let picture = plan.render(view, &Cancel::default()).map_err(|e| fault(e.to_string()))?;
+    screen::bytes(&picture, Sent::Jpeg, false).map(|(bytes, _)| bytes).map_err(|e| fault(e.to_string()))
+}
