@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
-use darkroot::settings::{Changes, Kind, SETTINGS, Setting};
 use darkroot::{Effective, Key, path_text};
 use serde_json::{Map, Value, json};
 
@@ -38,7 +37,7 @@ pub(crate) struct Recipe {
 impl Recipe {
     pub(crate) fn run(self) -> Result<Outcome> {
         if self.describe {
-            writeln!(crate::out::ours(), "{:#}", description())?;
+            writeln!(crate::out::ours(), "{:#}", darkroot::settings::description::json())?;
             return Ok(Outcome::Done);
         }
         let mut layers = self.picture.layers()?;
@@ -69,7 +68,7 @@ impl Recipe {
 fn as_json(file: Option<&Path>, effective: &Effective) -> Value {
     let one = |key: Key| {
         let (text, origin) = effective.get(key);
-        let mut value = json!({ "value": value(key, text), "from": origin.name() });
+        let mut value = json!({ "value": key.json(text), "from": origin.name() });
         if let Some(path) = origin.path() {
             value["path"] = path_text::text(path).into();
         }
@@ -77,46 +76,4 @@ fn as_json(file: Option<&Path>, effective: &Effective) -> Value {
     };
     let settings: Map<String, Value> = Key::all().map(one).collect();
     json!({ "file": file.map(path_text::text), "settings": settings })
-}
-
-/// The table of settings, for programs that offer them to a person.
-fn description() -> Value {
-    let one = |setting: &Setting| {
-        let mut about = json!({
-            "name": setting.name,
-            "default": value(Key::named(setting.name), setting.default),
-            "help": setting.help,
-            "allowed": setting.allowed(),
-            "changes": match setting.changes {
-                Changes::Encoding => "encoding",
-                Changes::Picture => "picture",
-                Changes::Photo => "photo",
-            },
-        });
-        match setting.kind {
-            Kind::Words(words) => {
-                about["type"] = "word".into();
-                about["words"] = words.iter().map(|w| json!({ "word": w.word, "help": w.help })).collect();
-            }
-            Kind::Switch => about["type"] = "switch".into(),
-            Kind::Number { least, most, whole, unit } => {
-                about["type"] = if whole { "whole number" } else { "number" }.into();
-                about["range"] = json!([least, most]);
-                about["unit"] = unit.into();
-            }
-            Kind::Text { .. } => about["type"] = "text".into(),
-            Kind::File(words) => {
-                about["type"] = "file".into();
-                about["words"] = words.iter().map(|word| json!({ "word": word, "help": "" })).collect();
-            }
-        }
-        about
-    };
-    SETTINGS.iter().map(one).collect()
-}
-
-/// Numbers and switches as such.
-fn value(key: Key, text: &str) -> Value {
-    let bare = key.is_number() || key.is_switch();
-    bare.then(|| serde_json::from_str(text).ok()).flatten().unwrap_or_else(|| text.into())
 }

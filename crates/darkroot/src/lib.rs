@@ -39,7 +39,7 @@ mod from_chart;
 mod provenance;
 
 pub mod inspect;
-pub use inspect::{Inspection, inspect, save_preview};
+pub use inspect::{Inspection, inspect, inspect_photo, save_preview};
 
 pub mod spectra;
 pub use spectra::SpectraFile;
@@ -95,6 +95,9 @@ pub mod metadata;
 mod lens;
 mod shown;
 pub use shown::{json_lines, lines, quoted, shown};
+
+mod quiet;
+pub use quiet::keep_decoders_quiet;
 
 mod nearest;
 pub use nearest::nearest;

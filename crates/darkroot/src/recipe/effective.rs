@@ -155,7 +155,7 @@ impl Effective {
 }
 
 /// A value as TOML has it.
-fn written(key: Key, text: &str) -> String {
+pub(super) fn written(key: Key, text: &str) -> String {
     let bare = key.is_switch() || key.is_number() && text.parse::<f64>().is_ok_and(f64::is_finite);
     if bare {
         return text.to_owned();

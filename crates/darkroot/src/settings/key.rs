@@ -105,8 +105,14 @@ impl Key {
         })
     }
 
+    /// A text of this setting as JSON has it: numbers and switches as such.
+    pub fn json(self, text: &str) -> serde_json::Value {
+        let bare = self.is_number() || self.is_switch();
+        bare.then(|| serde_json::from_str(text).ok()).flatten().unwrap_or_else(|| text.into())
+    }
+
     /// The key that a person may have meant by a name that is none.
-    pub(crate) fn nearest(name: &str) -> Option<Self> {
+    pub fn nearest(name: &str) -> Option<Self> {
         let name = name.to_lowercase().replace(['_', ' '], "-");
         if let Some(key) = Self::all().find(|key| key.setting().alias == Some(name.as_str())) {
             return Some(key);

@@ -9,6 +9,7 @@ pub mod from_chart;
 pub use from_chart::{ChartShot, FromChart};
 
 mod about;
+pub mod description;
 mod files;
 mod geometry;
 mod tones;

@@ -1,0 +1,57 @@
+"""Develop raw photographs: arrays in and out, colour from profiles, folders of any size.
+
+>>> import darkroot
+>>> with darkroot.open(sample) as photo:
+...     picture = photo.develop(look="vivid")        # uint8, sRGB, height x width x 3
+...     light = photo.develop(look="linear")         # float32, proportional to the light of the scene
+>>> darkroot.develop_file(sample, "picture.jpg", overwrite=True)["colours"]
+'profile for Nikon D750 (its sensitivities)'
+
+Everything is told by :class:`Error` and those made from it, which say whose fault it was. ``help(darkroot.settings)`` tells
+where the keywords come from.
+"""
+
+from . import _interpreter as _interpreter  # First: it refuses interpreters in which numpy could not work either.
+
+import atexit as _atexit
+
+from . import _core
+from ._core import Cancel, Recipe, __version__
+from ._develop import camera_rgb, develop, develop_file, inspect, settings
+from ._errors import (
+    Cancelled,
+    ChartError,
+    Error,
+    ExistsError,
+    FileError,
+    MissingError,
+    ProfileError,
+    SettingsError,
+    StorageError,
+    UnsupportedError,
+)
+from ._photo import Photo, open
+
+_atexit.register(_core.abandon)
+
+__all__ = [
+    "Cancel",
+    "Cancelled",
+    "ChartError",
+    "Error",
+    "ExistsError",
+    "FileError",
+    "MissingError",
+    "Photo",
+    "ProfileError",
+    "Recipe",
+    "SettingsError",
+    "StorageError",
+    "UnsupportedError",
+    "camera_rgb",
+    "develop",
+    "develop_file",
+    "inspect",
+    "open",
+    "settings",
+]
