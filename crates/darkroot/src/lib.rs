@@ -71,7 +71,7 @@ pub mod fault;
 pub mod charts;
 
 pub mod find_chart;
-pub use find_chart::{FoundCharts, find_charts};
+pub use find_chart::{FoundCharts, find_charts, find_charts_in};
 
 pub mod shot;
 pub use shot::{Shot, ShotOptions};

@@ -74,7 +74,7 @@ impl ChosenProfile<'_> {
 pub struct ProfileStore {
     entries: Vec<Entry>,
     /// The one profile that is given for every photograph, if there is such a one.
-    only: Option<Found>,
+    only: Option<Box<Found>>,
     /// Profile files that could not be used, each with its reason.
     pub faults: Vec<String>,
 }
@@ -141,7 +141,7 @@ impl ProfileStore {
     /// camera is refused, unless the profile names no camera.
     pub fn of_one(profile: Profile) -> Self {
         let only = Found { profile, place: "the profile that was given".to_owned() };
-        Self { only: Some(only), ..Self::default() }
+        Self { only: Some(Box::new(only)), ..Self::default() }
     }
 
     /// The profiles of the user's folder (every `.toml` below it, then every `.dcp`; the folder may be missing), then

@@ -7,9 +7,12 @@
 //! **What it does not do:** it develops nothing itself, opens no files but through the library, and has no unsafe code:
 //! arrays that share memory with a photograph go by NumPy's array interface ([`samples`]).
 
+mod batch;
 mod cancel;
+mod chart;
 mod fault;
 mod files;
+mod fit;
 mod json;
 mod photo;
 mod picture;
@@ -20,14 +23,19 @@ mod samples;
 mod settings;
 mod store;
 
-
 /// What `darkroot` consists of; see the package.
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
+    use crate::batch::batch;
+    #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]
+    use crate::chart::{detect_charts, make_profile, measure_chart, verify_picture, verify_shot};
+    #[pymodule_export]
     use crate::files::{abandon, develop_file, inspect};
+    #[pymodule_export]
+    use crate::fit::{fit_profile, from_matrix, from_sensitivities, from_spectra_file};
     #[pymodule_export]
     use crate::photo::Photo;
     #[pymodule_export]

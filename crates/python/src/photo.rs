@@ -96,7 +96,8 @@ impl Photo {
         });
         let opened = run(py, threads, &given(cancel), move |_| {
             let decoded = source.with(|bytes| Core::open_with(bytes, decoder, &limits()))?;
-            let photo = decoded.map_err(|fault| darkroot::Error::Raw { path: name.clone(), source: fault })?;
+            let photo =
+                decoded.map_err(|fault| darkroot::Error::Raw { path: name.clone(), source: fault })?;
             Ok::<_, darkroot::Error>(Open { photo, analysis: OnceLock::new(), name, source })
         })?;
         Ok(Self(Mutex::new(Some(Arc::new(opened.or_exception()?)))))
@@ -275,7 +276,9 @@ fn sides(rect: Rect) -> (usize, usize, usize, usize) {
 fn decoder_of(name: &str) -> PyResult<Decoder> {
     let mut settings = Settings::default();
     let key = darkroot::Key::named("decoder");
-    key.apply(name, &mut settings).map_err(|wrong| darkroot::RecipeError::Flag { key, wrong }).or_exception()?;
+    key.apply(name, &mut settings)
+        .map_err(|wrong| darkroot::RecipeError::Flag { key, wrong })
+        .or_exception()?;
     Ok(settings.decoder)
 }
 
@@ -297,7 +300,8 @@ fn for_array(mut settings: Settings, wanted: Option<&Bound<'_, PyAny>>) -> PyRes
     if let (Some(asked), Some(said)) = (asked, settings.bits)
         && asked != said
     {
-        let words = format!("`dtype` and `bits` ask for {} and {} bits; leave one out", asked.count(), said.count());
+        let words =
+            format!("`dtype` and `bits` ask for {} and {} bits; leave one out", asked.count(), said.count());
         return Err(Class::Settings.says(words));
     }
     let usual = if measured { Bits::Float } else { Bits::Eight };

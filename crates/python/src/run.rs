@@ -28,36 +28,47 @@ pub(crate) fn run<T: Send + 'static>(
     cancel: &Arc<Cancel>,
     work: impl FnOnce(&Cancel) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let (give, result) = channel();
     let own = Arc::clone(cancel);
-    let in_pool = move || {
+    let in_pool = move |wish: &Cancel| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
         match pool {
-            Ok(pool) => pool.install(|| work(&own)),
+            Ok(pool) => pool.install(|| work(wish)),
             // No room for threads: this one does it alone, by rayon's own fallback.
-            Err(_) => work(&own),
+            Err(_) => work(wish),
         }
     };
+    run_until(py, cancel, move || own.cancel(), in_pool)
+}
+
+/// As [`run`], on a thread alone. `ask` is called when Ctrl-C is pressed.
+pub(crate) fn run_until<T: Send + 'static>(
+    py: Python<'_>,
+    cancel: &Arc<Cancel>,
+    ask: impl FnOnce() + Send,
+    work: impl FnOnce(&Cancel) -> T + Send + 'static,
+) -> PyResult<T> {
+    let (give, result) = channel();
+    let own = Arc::clone(cancel);
     let guarded = move || {
         // Nobody listens any more after Ctrl-C.
-        let _ = give.send(catch_unwind(AssertUnwindSafe(in_pool)));
+        let _ = give.send(catch_unwind(AssertUnwindSafe(|| work(&own))));
     };
     let thread = thread::Builder::new().name("darkroot".into()).spawn(guarded);
     thread.map_err(|e| fault::storage(format!("no thread can be started: {e}")))?;
-    py.detach(move || wait(&result, cancel))
+    py.detach(move || wait(&result, ask))
 }
 
 /// What a thread ended with: its result, or what it panicked with.
 type Ended<T> = Result<T, Box<dyn Any + Send>>;
 
-fn wait<T>(result: &Receiver<Ended<T>>, cancel: &Cancel) -> PyResult<T> {
+fn wait<T>(result: &Receiver<Ended<T>>, ask: impl FnOnce()) -> PyResult<T> {
     loop {
         match result.recv_timeout(LISTENING) {
             Ok(ended) => return ended.map_err(|_| fault::ours()),
             Err(RecvTimeoutError::Disconnected) => return Err(fault::ours()),
             Err(RecvTimeoutError::Timeout) => {
                 if let Err(interrupt) = Python::attach(|py| py.check_signals()) {
-                    cancel.cancel();
+                    ask();
                     let until = Instant::now() + PATIENCE;
                     while let Some(left) = until.checked_duration_since(Instant::now()) {
                         if !matches!(result.recv_timeout(left), Err(RecvTimeoutError::Timeout)) {

@@ -73,7 +73,9 @@ impl Asked {
     pub(crate) fn texts(self) -> PyResult<Vec<(Key, String)>> {
         match self.profile {
             None => Ok(self.values),
-            Some(_) => Err(Class::Settings.says("a profile goes by its file here; save it and give the file's name")),
+            Some(_) => {
+                Err(Class::Settings.says("a profile goes by its file here; save it and give the file's name"))
+            }
         }
     }
 
