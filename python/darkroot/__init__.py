@@ -17,6 +17,16 @@ import atexit as _atexit
 
 from . import _core
 from ._core import Cancel, Recipe, __version__
+from ._batch import Summary, batch
+from ._chart import (
+    FoundChart,
+    MadeProfile,
+    MeasuredChart,
+    detect_charts,
+    make_profile,
+    measure_chart,
+    verify,
+)
 from ._develop import camera_rgb, develop, develop_file, inspect, settings
 from ._errors import (
     Cancelled,
@@ -30,7 +40,9 @@ from ._errors import (
     StorageError,
     UnsupportedError,
 )
+from ._many import Developed, develop_many
 from ._photo import Photo, open
+from ._profile import Profile, fit_profile, from_matrix, from_spectra
 
 _atexit.register(_core.abandon)
 
@@ -38,20 +50,35 @@ __all__ = [
     "Cancel",
     "Cancelled",
     "ChartError",
+    "Developed",
     "Error",
     "ExistsError",
     "FileError",
+    "FoundChart",
+    "MadeProfile",
+    "MeasuredChart",
     "MissingError",
     "Photo",
+    "Profile",
     "ProfileError",
     "Recipe",
     "SettingsError",
     "StorageError",
+    "Summary",
     "UnsupportedError",
+    "batch",
     "camera_rgb",
+    "detect_charts",
     "develop",
     "develop_file",
+    "develop_many",
+    "fit_profile",
+    "from_matrix",
+    "from_spectra",
     "inspect",
+    "make_profile",
+    "measure_chart",
     "open",
     "settings",
+    "verify",
 ]

@@ -39,3 +39,9 @@ class ExistsError(StorageError, FileExistsError):
 
 class Cancelled(Error):
     """Somebody called :meth:`darkroot.Cancel.cancel`."""
+
+
+for _class in list(vars().values()):
+    if isinstance(_class, type) and issubclass(_class, Error):
+        # Under the name by which people import it.
+        _class.__module__ = "darkroot"

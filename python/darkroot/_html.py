@@ -58,3 +58,55 @@ def _exposure(facts):
 def page(text):
     """A whole page inside of another, which neither of them can change."""
     return f'<iframe srcdoc="{html.escape(text)}" style="width:100%;height:640px;border:0"></iframe>'
+
+
+def light(figures, patches):
+    """Figures of a profile under one light, with a plot of its patches."""
+    rows = [("model", figures["model"]), ("temperature", f"{figures['kelvin']:.0f} K")]
+    for name, words in [("left_out", "colours left out"), ("held_out", "other colours"), ("training", "colours of the fit")]:
+        if figures[name]:
+            rows.append((f"dE2000, {words}", "mean {mean:.2f}, 95 % {p95:.2f}, max {max:.2f}".format(**figures[name])))
+    plot = swatches([p["name"] for p in patches], [p["xyz"] for p in patches], [p["de2000"] for p in patches])
+    return f"<h4>{html.escape(figures['light'])}</h4>{table(rows)}{plot}"
+
+
+def gates(gates):
+    """Checks of a shot."""
+    return table((gate["verdict"], "; ".join(filter(None, [gate["words"], gate["advice"]]))) for gate in gates)
+
+
+#: XYZ relative to D50 to linear sRGB (Bradford).
+TO_SRGB = (
+    (3.1338561, -1.6168667, -0.4906146),
+    (-0.9787684, 1.9161415, 0.0334540),
+    (0.0719453, -0.2289914, 1.4052427),
+)
+
+
+def css(xyz):
+    """A colour as CSS has it."""
+
+    def code(linear):
+        linear = min(max(linear, 0.0), 1.0)
+        return round(255 * (12.92 * linear if linear <= 0.0031308 else 1.055 * linear ** (1 / 2.4) - 0.055))
+
+    r, g, b = (code(sum(m * v for m, v in zip(row, xyz))) for row in TO_SRGB)
+    return f"rgb({r},{g},{b})"
+
+
+def swatches(names, colours, errors=None):
+    """Colours in a grid; below each its error, as a number and a bar."""
+    side, columns = 56, 12
+    parts = []
+    for i, (name, xyz) in enumerate(zip(names, colours)):
+        x, y = (i % columns) * side, (i // columns) * (side + 14)
+        parts.append(f'<rect x="{x}" y="{y}" width="{side - 4}" height="{side - 16}" fill="{css(xyz)}"/>')
+        words = html.escape(str(name))
+        if errors is not None:
+            length = min(errors[i] / 5, 1) * (side - 4)
+            parts.append(f'<rect x="{x}" y="{y + side - 14}" width="{length:.1f}" height="3" fill="#c33"/>')
+            words += f" {errors[i]:.1f}"
+        parts.append(f'<text x="{x}" y="{y + side}" font-size="9">{words}</text>')
+    rows = -(-len(names) // columns)
+    size = f'width="{columns * side}" height="{rows * (side + 14)}"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">{"".join(parts)}</svg>' if parts else ""

@@ -18,6 +18,12 @@ use crate::fault::{Class, OrException};
 use crate::settings::Asked;
 use crate::{json, run, store};
 
+/// Endings of raw files.
+#[pyfunction]
+pub(crate) fn endings() -> Vec<&'static str> {
+    darkroot_batch::filter::RAW_ENDINGS.to_vec()
+}
+
 /// What a batch is asked for beside its settings, as Python gives it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]

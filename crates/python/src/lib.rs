@@ -27,7 +27,7 @@ mod store;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::batch::batch;
+    use crate::batch::{batch, endings};
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]

@@ -90,6 +90,18 @@ impl Recipe {
         json::python(py, key.json(text))
     }
 
+    /// The value of a setting, or `default` where the recipe says nothing about it.
+    #[pyo3(signature = (name, default = None))]
+    fn get<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        default: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let key = key(name)?;
+        self.0.get(&key).map_or(Ok(default), |text| json::python(py, key.json(text)).map(Some))
+    }
+
     fn __contains__(&self, name: &str) -> bool {
         key(name).is_ok_and(|key| self.0.contains_key(&key))
     }
