@@ -5,7 +5,7 @@
 ...     picture = photo.develop(look="vivid")        # uint8, sRGB, height x width x 3
 ...     light = photo.develop(look="linear")         # float32, proportional to the light of the scene
 >>> darkroot.develop_file(sample, "picture.jpg", overwrite=True)["colours"]
-'profile for Nikon D750 (its sensitivities)'
+"estimated from the camera's matrix (expected dE2000 1.3)"
 
 Everything is told by :class:`Error` and those made from it, which say whose fault it was. ``help(darkroot.settings)`` tells
 where the keywords come from.

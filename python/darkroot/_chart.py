@@ -217,7 +217,7 @@ def verify(path, *, profile=None, light=None, preset=None, chart="classic24", re
 
     With a ``profile`` (a :class:`Profile` or its name), ``path`` is a raw shot, and the profile is judged by it. Without one, ``path``
     is a finished picture (TIFF, JPEG, PNG), which is judged by the chart's reference, and by a guideline where ``preset`` names
-    one ("fadgi-4", "iso-19264-a" ...).
+    one ("fadgi-4star", "iso19264-a", "metamorfoze-full" ...).
 
     Returns a dictionary: ``light``, ``de2000`` and ``sl1`` (mean, median, p95, max), ``patches``; for finished pictures also ``space``,
     ``verdicts`` and whether all were ``kept``.

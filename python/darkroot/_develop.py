@@ -10,7 +10,7 @@ def develop(path, *, dtype=None, scale=1, region=None, recipe=None, threads=None
     """Opens a file and develops it: :func:`open` and :meth:`Photo.develop` in one.
 
     >>> darkroot.develop(sample, scale=1/8, look="vivid").shape
-    (49, 74, 3)
+    (60, 90, 3)
     """
     with open(path, decoder=decoder, threads=threads, cancel=cancel) as photo:
         return photo.develop(
@@ -46,7 +46,7 @@ def develop_file(
 
     >>> report = darkroot.develop_file(sample, "small.jpg", resize="long:64", overwrite=True)
     >>> report["width"], report["height"], report["format"]
-    (64, 42, 'JPEG')
+    (64, 43, 'JPEG')
     """
     arguments = dict(recipe=recipe, folders=folders, threads=_threads.checked(threads), cancel=cancel, **settings)
     if _storage.is_remote(dst):

@@ -44,7 +44,7 @@ def develop_many(paths, *, workers=None, threads=1, **arguments):
 
     >>> for one in darkroot.develop_many([sample, "nothing.nef"], scale=1/8):
     ...     print(one.picture.shape if one.error is None else type(one.error).__name__)
-    (49, 74, 3)
+    (60, 90, 3)
     MissingError
     """
     workers = _threads.checked(workers) or os.cpu_count() or 1

@@ -17,9 +17,9 @@ class Photo(_core.Photo):
     >>> with darkroot.open(sample) as photo:
     ...     print(photo.camera, photo.cfa, photo.mosaic.shape, photo.mosaic.dtype)
     ...     picture = photo.develop(scale=1/4)
-    Nikon D750 RGGB (400, 600) uint16
+    Nikon D750 RGGB (480, 720) uint16
     >>> picture.shape, picture.dtype
-    ((98, 148, 3), dtype('uint8'))
+    ((120, 180, 3), dtype('uint8'))
     """
 
     @property
@@ -49,7 +49,7 @@ class Photo(_core.Photo):
 
         >>> light = darkroot.open(sample).light()
         >>> light.shape, light.dtype, bool(light.max() <= 1.0)
-        ((400, 600), dtype('float32'), True)
+        ((480, 720), dtype('float32'), True)
         """
         return super().light(threads=_threads.checked(threads))
 
@@ -83,7 +83,7 @@ class Photo(_core.Photo):
         (16, 32, 3)
         >>> photo.develop(look="film")
         Traceback (most recent call last):
-        darkroot.SettingsError: `look`: `film` is no look; use neutral, vivid, flat, reproduction or linear
+        darkroot.SettingsError: `look`: `film` is no look: use neutral, vivid, flat, reproduction or linear
         """
         return super().develop(
             dtype=dtype,
@@ -102,7 +102,7 @@ class Photo(_core.Photo):
 
         >>> rgb = darkroot.open(sample).camera_rgb(scale=1/8)
         >>> rgb.shape, rgb.dtype
-        ((49, 74, 3), dtype('float32'))
+        ((60, 90, 3), dtype('float32'))
         """
         return self.develop(
             scale=scale, region=region, threads=threads, cancel=cancel, **{**settings, "space": "camera"}
@@ -113,7 +113,7 @@ class Photo(_core.Photo):
         light (``kelvin``, ``tint``, ``multipliers``), demosaicing, exposure (``gain``), and notes on what was assumed.
 
         >>> darkroot.open(sample).explain()["demosaic"]
-        'lmmse'
+        'directional LMMSE (Zhang and Wu 2005)'
         """
         return super().explain(recipe=recipe, threads=_threads.checked(threads), **settings)
 
@@ -169,10 +169,10 @@ def open(source, *, decoder="flashraw", threads=None, cancel=None):
     'Nikon D750'
     >>> with builtins.open(sample, "rb") as file:
     ...     darkroot.open(file).white
-    array([15520., 15520., 15520.], dtype=float32)
+    array([16383., 16383., 16383.], dtype=float32)
     >>> darkroot.open(b"GIF89a")
     Traceback (most recent call last):
-    darkroot.FileError: the bytes: is not a raw photograph: a GIF picture; give a raw file such as NEF, DNG, CR2, ARW or RAF
+    darkroot.FileError: the bytes: is not a raw photograph: it is a GIF picture; give a raw file such as NEF, DNG, CR2, ARW or RAF
     >>> darkroot.open("nothing.nef")
     Traceback (most recent call last):
     darkroot.MissingError: nothing.nef: cannot be read: there is no such file; check the name

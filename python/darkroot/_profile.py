@@ -16,12 +16,12 @@ class Profile(_core.Profile):
     (colour-science's characterisation among them). It is compared by what it says, and can be pickled. Exposure does not matter
     to it: ``profile(2 * rgb) == 2 * profile(rgb)``, except for plain polynomials.
 
-    >>> profile = Profile.load("Nikon D750")
+    >>> profile = Profile.load("Nikon D700")
     >>> profile.lights, profile.is_camera
     (['D65', 'D50', 'A'], True)
     >>> profile([[1, 1, 1], [0.2, 0.4, 0.1]], light="D50").round(3)
     array([[0.964, 1.   , 0.825],
-           [0.233, 0.345, 0.057]])
+           [0.226, 0.371, 0.045]])
     """
 
     @classmethod
@@ -74,7 +74,7 @@ class Profile(_core.Profile):
         """What may be wrong with the models: dictionaries with ``light``, ``check``, ``severity`` (note, warning or failure),
         ``value`` and ``words``. Empty where nothing is.
 
-        >>> [finding for finding in Profile.load("Nikon D750").lint() if finding["severity"] == "failure"]
+        >>> [finding for finding in Profile.load("Nikon D700").lint() if finding["severity"] == "failure"]
         []
         """
         return super().lint()
@@ -106,7 +106,7 @@ class Profile(_core.Profile):
 
         Returns for each light how far the file, read back, is off: ``light``, ``de2000`` and the number of ``colours``.
 
-        >>> found = Profile.load("Nikon D750").export("d750.cube", light="D50", overwrite=True)
+        >>> found = Profile.load("Nikon D700").export("d750.cube", light="D50", overwrite=True)
         >>> found[0]["de2000"]["mean"] < 0.1
         True
         """
@@ -164,7 +164,7 @@ def fit_profile(
     xyz : n x 3, what they are: XYZ under D50, Y = 1 for the perfect diffuser; or instead
     reflectance : n x m, their spectral reflectances, 0 to 1, at ``wavelengths`` in nm. Best under lights other than D50.
     light : the light that they were seen in: "D50", "A", "LED-B3", "5200K", "0.34,0.36", or a file with its spectrum.
-    camera : make and model ("Nikon D750"). A profile of no camera is accepted for every photograph.
+    camera : make and model ("Nikon D700"). A profile of no camera is accepted for every photograph.
     model : linear, root-2, root-3, root-4, anchored, hue-plane, half, spectral or chromatic.
     names : a name for each colour.
     date : a day that the profile carries, YYYY-MM-DD.
@@ -174,7 +174,8 @@ def fit_profile(
     >>> import numpy
     >>> rng = numpy.random.default_rng(1)
     >>> matrix = numpy.array([[0.6, 0.3, 0.0642], [0.2, 0.75, 0.05], [0.0, 0.1, 0.7251]])
-    >>> rgb = numpy.vstack([rng.uniform(0.05, 0.9, (30, 3)), numpy.outer([0.1, 0.3, 0.9], [1, 1, 1])])
+    >>> rgb = rng.uniform(0.05, 0.6, (30, 1)) * rng.uniform(0.8, 1.2, (30, 3))
+    >>> rgb = numpy.vstack([rgb, numpy.outer([0.1, 0.3, 0.9], [1, 1, 1])])
     >>> profile = fit_profile(rgb, rgb @ matrix.T, model="linear")
     >>> profile.figures()["left_out"]["max"] < 0.05
     True

@@ -4,7 +4,7 @@
 >>> darkroot.imageio.register()
 >>> import imageio.v3
 >>> imageio.v3.imread(sample).shape
-(392, 592, 3)
+(480, 720, 3)
 >>> imageio.v3.imread(sample, look="linear", dtype="float32").dtype
 dtype('float32')
 """

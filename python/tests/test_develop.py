@@ -98,7 +98,7 @@ def test_a_dash_is_a_name_like_any_other(nef, tmp_path, monkeypatch):
         ({"exposure": 99}, "-20 to 20"),
         ({"clarity": 1}, "`clarity` is no setting"),
         ({"look": "linear", "dtype": "uint8"}, "8 bits are too coarse"),
-        ({"look": "linear", "contrast": 1.2}, "no room for contrast"),
+        ({"look": "linear", "contrast": 0.2}, "no room for contrast"),
         ({"decoder": "rawloader"}, "`decoder` counts when a file is read"),
         ({"exposure_from_chart": "auto"}, "develop_file"),
         ({"engine": "imagepipe"}, "develop_file"),

@@ -50,7 +50,7 @@ def test_xarray_gets_names_and_facts(nef):
 def test_colour_science_takes_profiles(nef):
     """A profile stands where a function of colours is wanted, and its XYZ are those of that library."""
     colour = pytest.importorskip("colour")
-    profile = darkroot.Profile.load("Nikon D750")
+    profile = darkroot.Profile.load("Nikon D700")
     methods = colour.characterisation.APPLY_MATRIX_COLOUR_CORRECTION_METHODS
     methods["Darkroot"] = lambda rgb, profile, **_: profile(rgb, "D50")
     rgb = numpy.random.default_rng(2).uniform(0.05, 0.9, (20, 3))
@@ -71,7 +71,7 @@ def test_notebooks_show_things(nef):
 
     shown = re.search(r"base64,([^\"]+)", photo._repr_html_())[1]
     assert image.open(io.BytesIO(base64.b64decode(shown))).size[0] <= 480
-    assert "<h4>D65</h4>" in darkroot.Profile.load("Nikon D750")._repr_html_()
+    assert "<h4>D65</h4>" in darkroot.Profile.load("Nikon D700")._repr_html_()
     assert "<script" not in darkroot.fit_profile(
         *_colours(), camera="<script>alert(1)</script> x"
     )._repr_html_()
