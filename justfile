@@ -34,3 +34,11 @@ fuzz mutants="6000":
 data:
     cargo run --release -p darkroot-simulate --example make_samples
     bash profiles/make.sh
+
+# The Python package: the wheel, with the program in it, into dist/.
+wheel:
+    pip wheel . --no-deps -w dist
+
+# Its tests, on what `cargo test` compiled.
+python:
+    bash .ci/run python

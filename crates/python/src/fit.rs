@@ -84,10 +84,9 @@ pub(crate) fn fit_profile(
 
 /// The camera that a published matrix makes most probable.
 #[pyfunction]
-pub(crate) fn from_matrix(py: Python<'_>, camera: PathBuf) -> PyResult<(String, String)> {
-    let name = camera.to_string_lossy().into_owned();
+pub(crate) fn from_matrix(py: Python<'_>, camera: String) -> PyResult<(String, String)> {
     let found = run(py, None, &Arc::default(), move |_| {
-        darkroot::estimate_named(&name, &darkroot::Limits::default())
+        darkroot::estimate_named(&camera, &darkroot::Limits::default())
     })?;
     let found = found.or_exception()?;
     Ok((text(&found.profile), found.words()))
