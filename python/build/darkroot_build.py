@@ -15,12 +15,9 @@ import subprocess
 try:
     import maturin
     from maturin import (  # noqa: F401
-        build_sdist,
         get_requires_for_build_editable,
         get_requires_for_build_sdist,
         get_requires_for_build_wheel,
-        prepare_metadata_for_build_editable,
-        prepare_metadata_for_build_wheel,
     )
 except ImportError:
     # As a script it needs no maturin.
@@ -48,6 +45,12 @@ def program():
     if shutil.which("strip"):
         subprocess.run(["strip", placed], check=False)
     return placed
+
+
+def build_sdist(*arguments, **keywords):
+    """The sources, of which whoever installs them builds the program, too."""
+    (ROOT / "target/wheel").mkdir(parents=True, exist_ok=True)
+    return maturin.build_sdist(*arguments, **keywords)
 
 
 def build_wheel(*arguments, **keywords):
