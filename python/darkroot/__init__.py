@@ -44,12 +44,16 @@ from ._many import Developed, develop_many
 from ._photo import Photo, open
 from ._profile import Profile, fit_profile, from_matrix, from_spectra
 
+#: Endings of raw files in lower case, without the dot.
+ENDINGS = tuple(_core.endings())
+
 _atexit.register(_core.abandon)
 
 __all__ = [
     "Cancel",
     "Cancelled",
     "ChartError",
+    "ENDINGS",
     "Developed",
     "Error",
     "ExistsError",

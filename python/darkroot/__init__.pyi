@@ -13,6 +13,7 @@ from typing_extensions import Self, Unpack
 from ._keywords import Settings
 
 __version__: str
+ENDINGS: tuple[str, ...]
 
 Path: TypeAlias = str | os.PathLike[str]
 Region: TypeAlias = tuple[int, int, int, int]

@@ -16,8 +16,6 @@ from imageio.core.v3_plugin_api import ImageProperties, PluginV3
 
 import darkroot
 
-#: Endings that are raw files, as the program's batch takes them.
-ENDINGS = tuple(darkroot._core.endings())
 
 
 class Plugin(PluginV3):
@@ -71,7 +69,7 @@ def register():
     imageio.config.known_plugins[name] = imageio.config.PluginConfig(
         name=name, class_name="Plugin", module_name="darkroot.imageio", is_legacy=False, install_name="darkroot"
     )
-    for ending in ENDINGS:
+    for ending in darkroot.ENDINGS:
         known = imageio.config.known_extensions.setdefault(f".{ending}", [])
         if known and known[0].priority and known[0].priority[0] == name:
             continue

@@ -13,11 +13,14 @@ import darkroot
 
 def rows(folder, out, ending="jpg"):
     """The raw files of a folder and of those in it, each with the place of its picture, as ``darkroot batch`` names them."""
-    folder, endings = pathlib.Path(folder), set(darkroot._core.endings())
+    folder, taken = pathlib.Path(folder), {}
     for path in sorted(folder.rglob("*")):
-        if path.suffix[1:].lower() in endings and not path.name.startswith("."):
-            place = pathlib.Path(out) / path.relative_to(folder).with_suffix(f".{ending}")
-            yield {"src": str(path), "dst": str(place)}
+        if path.suffix[1:].lower() in darkroot.ENDINGS and not path.name.startswith("."):
+            place = str(pathlib.Path(out) / path.relative_to(folder).with_suffix(f".{ending}"))
+            if place in taken:
+                raise ValueError(f"{taken[place]} and {path} would both become {place}; put them into folders of their own")
+            taken[place] = path
+            yield {"src": str(path), "dst": place}
 
 
 def develop(row, **settings):

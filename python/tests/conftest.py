@@ -61,6 +61,6 @@ def raw(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def chart(raw):
-    """A shot in which a chart of 24 patches is large enough to measure."""
-    return raw("--format", "nef", "--width", "1500", "--height", "1000", name="chart.nef")
+def chart(nef):
+    """A shot with a chart of 24 patches in it, under daylight of 5500 K: that of the samples."""
+    return nef

@@ -114,6 +114,14 @@ def test_a_task_that_runs_twice_changes_nothing(folder, tmp_path):
     assert pathlib.Path(row["dst"]).read_bytes() == before and first["error"] == second["error"] == ""
 
 
+def test_two_files_never_become_one_picture(folder, nef):
+    import engine
+
+    (folder / "0000.dng").write_bytes(nef.read_bytes())
+    with pytest.raises(ValueError, match="would both become"):
+        list(engine.rows(folder, "out"))
+
+
 def test_threads_follow_the_environment(monkeypatch):
     monkeypatch.setenv("DARKROOT_THREADS", "3")
     assert darkroot._threads.usual() == 3
