@@ -42,3 +42,11 @@ wheel:
 # Its tests, on what `cargo test` compiled.
 python:
     bash .ci/run python
+
+# What can be installed without Rust, into dist/: wheel, .deb, static program.
+package *what:
+    bash package/build.sh {{what}}
+
+# Each of them tried in a clean root (as root, with debootstrap), and taken away again.
+package-try *root:
+    bash package/try.sh {{root}}
