@@ -34,3 +34,19 @@ fuzz mutants="6000":
 data:
     cargo run --release -p darkroot-simulate --example make_samples
     bash profiles/make.sh
+
+# The Python package: the wheel, with the program in it, into dist/.
+wheel:
+    pip wheel . --no-deps -w dist
+
+# Its tests, on what `cargo test` compiled.
+python:
+    bash .ci/run python
+
+# What can be installed without Rust, into dist/: wheel, .deb, static program.
+package *what:
+    bash package/build.sh {{what}}
+
+# Each of them tried in a clean root (as root, with debootstrap), and taken away again.
+package-try *root:
+    bash package/try.sh {{root}}

@@ -118,7 +118,7 @@ enum Outcome {
 
 fn main() -> ExitCode {
     let mut cli = usage::parse();
-    keep_decoders_quiet();
+    darkroot::keep_decoders_quiet();
     cli.common.bound_threads();
     let common = cli.common;
     // Some commands give up what they do not need first, and must be the only thread then.
@@ -191,17 +191,4 @@ fn chain(error: &anyhow::Error) -> String {
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let io = error.chain().find_map(|cause| cause.downcast_ref::<std::io::Error>());
     io.is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe)
-}
-
-/// A decoder that panics over a damaged file is caught and becomes an error; its own report helps nobody.
-fn keep_decoders_quiet() {
-    const DECODERS: [&str; 4] = ["flashraw", "rawloader", "imagepipe", "moxcms"];
-    let report = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        let from_decoder =
-            info.location().is_some_and(|l| DECODERS.iter().any(|decoder| l.file().contains(decoder)));
-        if !from_decoder {
-            report(info);
-        }
-    }));
 }

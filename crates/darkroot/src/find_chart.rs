@@ -6,7 +6,7 @@ pub use darkroot_chart::Found;
 use darkroot_chart::{ChartLayout, Options, Quad, Rejected, Search, SearchImage, measure, windows};
 use darkroot_colour::RgbSpace;
 use darkroot_photo::metadata::Metadata;
-use darkroot_photo::{PictureSpace, Samples, Size};
+use darkroot_photo::{Mosaic, PictureSpace, Samples, Size};
 
 use crate::fault::ChartError;
 use crate::shot::View;
@@ -48,6 +48,12 @@ pub fn find_charts(path: &Path, layouts: &[ChartLayout], settings: &Settings) ->
 /// Looks for charts in a file that is open already.
 pub fn find_in(view: &View, layouts: &[ChartLayout]) -> FoundCharts {
     FoundCharts { size: view.size, search: search(view, layouts) }
+}
+
+/// Looks for charts in a picture of linear light, R, G and B side by side.
+pub fn find_charts_in(light: Mosaic<f32>, layouts: &[ChartLayout]) -> FoundCharts {
+    let view = View::of_picture(light);
+    FoundCharts { size: view.size, search: search(&view, layouts) }
 }
 
 /// Charts in pixels of the developed picture.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use darkroot_colour::temperature::Temperature;
-use darkroot_develop::{Histogram, Whites};
+use darkroot_develop::{Analysis, Histogram, Whites};
 use darkroot_photo::metadata::{Directory, Metadata, tag};
 use darkroot_photo::{AsShot, Calibration, Capture, Layout};
 use serde::Serialize;
@@ -109,6 +109,25 @@ pub struct Shot {
     pub copyright: Option<String>,
 }
 
+impl Shot {
+    /// What stands in the metadata of a capture.
+    pub fn of(metadata: &Metadata) -> Self {
+        let text = |directory, tag| metadata.text(directory, tag).map(str::to_owned);
+        // Some programs write 0 for what they do not know.
+        let number = |tag| metadata.number(Directory::Exif, tag).filter(|v| *v > 0.0);
+        Self {
+            date: text(Directory::Exif, tag::DATE_TIME_ORIGINAL),
+            lens: text(Directory::Exif, tag::LENS_MODEL),
+            exposure_time: number(tag::EXPOSURE_TIME),
+            f_number: number(tag::F_NUMBER),
+            iso: number(tag::ISO),
+            focal_length: number(tag::FOCAL_LENGTH),
+            artist: text(Directory::Image, tag::ARTIST),
+            copyright: text(Directory::Image, tag::COPYRIGHT),
+        }
+    }
+}
+
 /// Looks at one file.
 ///
 /// # Errors
@@ -121,7 +140,22 @@ pub fn inspect(
 ) -> Result<Inspection, Error> {
     let photo = Photo::open_with(&files::read(input)?, settings.decoder, &settings.limits)
         .map_err(|source| Error::Raw { path: input.to_owned(), source })?;
-    let (capture, analysis) = (photo.capture(), photo.analyse_as_asked());
+    inspect_photo(input, &photo, &photo.analyse_as_asked(), settings, store, samples_hash)
+}
+
+/// As [`inspect()`], where the photograph is open already; `input` is how it is called.
+///
+/// # Errors
+/// A profile that cannot be used.
+pub fn inspect_photo(
+    input: &Path,
+    photo: &Photo,
+    analysis: &Analysis,
+    settings: &Settings,
+    store: &ProfileStore,
+    samples_hash: bool,
+) -> Result<Inspection, Error> {
+    let capture = photo.capture();
     let saturation = analysis.survey().saturation;
     let Histogram { bins, clipped } = darkroot_develop::histogram(capture, analysis.light(), saturation);
     let chosen = photo.profile(store, settings).map_err(|e| *e)?;
@@ -161,7 +195,7 @@ pub fn inspect(
         baseline_exposure: capture.baseline_exposure,
         corrections: [capture.mosaic_corrections.len(), capture.picture_corrections.len()],
         profile: store.find(&capture.camera).map(|f| format!("{} ({})", f.profile.camera().name(), f.place)),
-        shot: shot(&capture.metadata),
+        shot: Shot::of(&capture.metadata),
         saturation,
         blur: analysis.blur(),
         clipped,
@@ -207,21 +241,5 @@ fn calibration(c: &Calibration) -> CalibrationFacts {
         kelvin: c.kelvin,
         color_matrix: rows(&c.color_matrix),
         forward_matrix: c.forward_matrix.as_ref().map(rows),
-    }
-}
-
-fn shot(metadata: &Metadata) -> Shot {
-    let text = |directory, tag| metadata.text(directory, tag).map(str::to_owned);
-    // Some programs write 0 for what they do not know.
-    let number = |tag| metadata.number(Directory::Exif, tag).filter(|v| *v > 0.0);
-    Shot {
-        date: text(Directory::Exif, tag::DATE_TIME_ORIGINAL),
-        lens: text(Directory::Exif, tag::LENS_MODEL),
-        exposure_time: number(tag::EXPOSURE_TIME),
-        f_number: number(tag::F_NUMBER),
-        iso: number(tag::ISO),
-        focal_length: number(tag::FOCAL_LENGTH),
-        artist: text(Directory::Image, tag::ARTIST),
-        copyright: text(Directory::Image, tag::COPYRIGHT),
     }
 }

@@ -44,7 +44,7 @@ mod from_chart;
 mod provenance;
 
 pub mod inspect;
-pub use inspect::{Inspection, inspect, save_preview};
+pub use inspect::{Inspection, inspect, inspect_photo, save_preview};
 
 pub mod spectra;
 pub use spectra::SpectraFile;
@@ -76,7 +76,7 @@ pub mod fault;
 pub mod charts;
 
 pub mod find_chart;
-pub use find_chart::{FoundCharts, find_charts};
+pub use find_chart::{FoundCharts, find_charts, find_charts_in};
 
 pub mod shot;
 pub use shot::{Shot, ShotOptions};
@@ -100,6 +100,9 @@ pub mod metadata;
 mod lens;
 mod shown;
 pub use shown::{json_lines, lines, quoted, shown};
+
+mod quiet;
+pub use quiet::keep_decoders_quiet;
 
 mod nearest;
 pub use nearest::nearest;

@@ -73,6 +73,8 @@ impl ChosenProfile<'_> {
 #[derive(Debug, Clone, Default)]
 pub struct ProfileStore {
     entries: Vec<Entry>,
+    /// The one profile that is given for every photograph, if there is such a one.
+    only: Option<Box<Found>>,
     /// Profile files that could not be used, each with its reason.
     pub faults: Vec<String>,
 }
@@ -133,6 +135,13 @@ impl ProfileStore {
     /// The profiles built into the program.
     pub fn builtin() -> Self {
         Self::default().with_builtin()
+    }
+
+    /// A store of this one profile, for programs that have it in memory. It is given for every photograph; one of another
+    /// camera is refused, unless the profile names no camera.
+    pub fn of_one(profile: Profile) -> Self {
+        let only = Found { profile, place: "the profile that was given".to_owned() };
+        Self { only: Some(Box::new(only)), ..Self::default() }
     }
 
     /// The profiles of the user's folder (every `.toml` below it, then every `.dcp`; the folder may be missing), then
@@ -196,29 +205,32 @@ impl ProfileStore {
         camera: &Camera,
         choice: &ProfileChoice,
     ) -> Result<Option<ChosenProfile<'_>>, Error> {
+        let chosen = |found: &Found| ChosenProfile {
+            profile: Cow::Owned(found.profile.clone()),
+            place: Cow::Owned(found.place.clone()),
+            estimated: false,
+        };
+        let checked = |found: &Found, path: &Path| match is_for(&found.profile, camera) {
+            true => Ok(Some(chosen(found))),
+            false => Err(Error::OtherCamera {
+                path: path.to_owned(),
+                of: found.profile.camera().name(),
+                picture: None,
+                camera: camera.name(),
+            }),
+        };
         match choice {
             ProfileChoice::Matrix => Ok(None),
+            ProfileChoice::Automatic if self.only.is_some() => self.only.as_ref().map_or(Ok(None), |only| {
+                let serves_all = only.profile.camera().name().is_empty();
+                if serves_all { Ok(Some(chosen(only))) } else { checked(only, Path::new(&only.place)) }
+            }),
             ProfileChoice::Automatic => Ok(self.find(camera).map(|found| ChosenProfile {
                 profile: Cow::Borrowed(&found.profile),
                 place: Cow::Borrowed(&found.place),
                 estimated: false,
             })),
-            ProfileChoice::File(path) => {
-                let Found { profile, place } = self.named(path)?;
-                if !is_for(&profile, camera) {
-                    return Err(Error::OtherCamera {
-                        path: path.clone(),
-                        of: profile.camera().name(),
-                        picture: None,
-                        camera: camera.name(),
-                    });
-                }
-                Ok(Some(ChosenProfile {
-                    profile: Cow::Owned(profile),
-                    place: Cow::Owned(place),
-                    estimated: false,
-                }))
-            }
+            ProfileChoice::File(path) => checked(&self.named(path)?, path),
         }
     }
 

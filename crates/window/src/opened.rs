@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use darkroot::{Analysis, Photo, ProfileStore, Settings};
 use darkroot_batch::facts::modified;
+use darkroot_develop::Look;
 
 use crate::fault::Fault;
 use crate::roots::Place;
@@ -32,6 +33,10 @@ struct Identity {
     modified: i64,
     rawloader: bool,
     from_preview: bool,
+    /// With what the camera rendered, for its look.
+    rendered: bool,
+    /// Dark and flat frames.
+    frames: [Option<PathBuf>; 2],
 }
 
 /// A photograph that is held, or being decoded: who comes second waits for the first.
@@ -97,6 +102,8 @@ fn identity(path: &Path, settings: &Settings) -> Result<Identity, Fault> {
         modified: modified(&data),
         rawloader: settings.decoder == darkroot::Decoder::Rawloader,
         from_preview: settings.from_preview,
+        rendered: settings.recipe.look == Look::Camera,
+        frames: [settings.dark.clone(), settings.flat.clone()],
     })
 }
 
@@ -108,7 +115,7 @@ fn decode(place: &Place, store: &ProfileStore, settings: &Settings) -> Result<Op
         let photo = Photo::open_preview(&bytes, &settings.limits).map_err(of_raw)?;
         photo.ok_or_else(|| darkroot::Error::NoPreview { path: path.clone() })?
     } else {
-        Photo::open_for(&bytes, store, settings).map_err(of_raw)?
+        Photo::open_for(&bytes, store, settings).map_err(of_raw)?.with_frames(settings)?
     };
     let analysis = photo.analyse_as_asked();
     Ok(Open { photo, analysis, path })

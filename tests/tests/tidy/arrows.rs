@@ -9,7 +9,7 @@ use darkroot_tests::root;
 use crate::files;
 
 /// Which of our crates each crate uses, as `docs/architecture.md` has it. Tests and benches may use any.
-const ARROWS: [(&str, &[&str]); 16] = [
+const ARROWS: [(&str, &[&str]); 17] = [
     ("colour", &[]),
     ("photo", &["colour"]),
     ("sandbox", &[]),
@@ -27,6 +27,8 @@ const ARROWS: [(&str, &[&str]); 16] = [
     ("window", &["batch", "chart", "colour", "darkroot", "develop", "encode", "photo", "raw"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
     ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw", "sandbox", "window"]),
+    // Bindings: they take and show the nouns of all of these.
+    ("python", &["batch", "calibrate", "chart", "colour", "darkroot", "develop", "photo", "profile", "raw"]),
     ("tests", &["chart", "colour", "darkroot", "develop", "lens", "photo", "profile", "simulate"]),
 ];
 

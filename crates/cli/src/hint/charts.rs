@@ -2,12 +2,16 @@
 
 use std::error::Error;
 
+use darkroot::export::ExportError;
 use darkroot::fault::{ChartError, NeutralError};
 use darkroot::shot::{Finding, Gate};
 
 /// What to do about an error of a chart job.
 pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
     use darkroot::Error as E;
+    if let Some(of_export) = error.downcast_ref() {
+        return export(of_export).map(str::to_owned);
+    }
     let words = match error.downcast_ref::<E>()? {
         E::Chart { source, .. } => return of_chart(source),
         E::Neutral { source: NeutralError::NoMatrix, .. } => "`--neutral` takes them",
@@ -20,6 +24,19 @@ pub(super) fn hint(error: &(dyn Error + 'static)) -> Option<String> {
         _ => return None,
     };
     Some(words.to_owned())
+}
+
+fn export(error: &ExportError) -> Option<&'static str> {
+    match error {
+        ExportError::SeveralLights { .. } => Some("`--light` names it"),
+        ExportError::ManyLights { .. } => Some("give fewer to `--light`"),
+        ExportError::NoNeutral { .. } => Some(
+            "name a raw file of the camera with `--for FILE`, or give the camera RGB of the white with `--neutral R,G,B`",
+        ),
+        ExportError::CurveInClf => Some("add `-linear` to the name of the space"),
+        ExportError::IntoCamera => Some("choose another `--space`"),
+        _ => None,
+    }
 }
 
 fn of_chart(error: &ChartError) -> Option<String> {

@@ -24,7 +24,7 @@ pub(super) struct Apply {
 impl Apply {
     pub(super) fn run(self) -> Result<Outcome> {
         let profile = super::store().choose(&self.profile)?.profile;
-        let model = super::lights::choose(&profile, self.light.as_deref())?.model;
+        let model = darkroot::export::calibration(&profile, self.light.as_deref())?.model;
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(std::io::stdin().lock());
         let head = reader.headers().context("stdin")?.clone();
         let column = |name: &str| {

@@ -4,16 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
-use darkroot_colour::{RgbSpace, Xyz};
+use darkroot::export::{ExportRequest, Target, export};
 use darkroot_develop::OutputSpace;
-use darkroot_profile::export::clf::Clf;
-use darkroot_profile::export::cube::{self, Shaper};
-use darkroot_profile::export::dcp::{Dcp, WithNeutral};
-use darkroot_profile::export::icc::{self, Icc};
-use darkroot_profile::export::{clf, deviation};
-use darkroot_profile::{Calibration, Profile};
+use darkroot_profile::export::cube::Shaper;
+use darkroot_profile::export::icc;
 
-use super::lights;
 use crate::{Common, Outcome};
 
 /// Write a profile for other programs: DCP, ICC, .cube or CLF
@@ -93,33 +88,47 @@ enum IccVersion {
     Four,
 }
 
-/// What an exported file makes of balanced camera RGB.
-type ReadBack = Box<dyn Fn([f64; 3]) -> Xyz>;
-
 impl Export {
     pub(super) fn run(self, common: Common) -> Result<Outcome> {
         self.refuse_what_does_not_fit()?;
         let profile = super::store().choose(&self.profile)?.profile;
-        let calibrations = self.calibrations(&profile)?;
-        let (bytes, read_back) = match self.to {
-            Format::Dcp => self.dcp(&profile, &calibrations)?,
-            _ => self.table(&profile, &calibrations[0])?,
-        };
-        darkroot::export::write(&self.output, &bytes, self.overwrite)?;
+        let exported = export(&profile, &self.request())?;
+        darkroot::export::write(&self.output, &exported.bytes, self.overwrite)?;
         if !common.quiet {
-            for (calibration, read_back) in calibrations.iter().zip(read_back) {
-                let found = deviation(calibration, read_back);
+            for (light, found) in exported.deviations {
                 crate::say(format_args!(
-                    "{}: read back, dE2000 from the profile mean {:.3}, 95 % {:.3}, max {:.3} ({} colours in sRGB)",
-                    calibration.light.name,
-                    found.de2000.mean,
-                    found.de2000.p95,
-                    found.de2000.max,
-                    found.colours
+                    "{light}: read back, dE2000 from the profile mean {:.3}, 95 % {:.3}, max {:.3} ({} colours in sRGB)",
+                    found.de2000.mean, found.de2000.p95, found.de2000.max, found.colours
                 ));
             }
         }
         Ok(Outcome::Done)
+    }
+
+    fn request(&self) -> ExportRequest {
+        let version = match self.icc_version {
+            Some(IccVersion::Two) => icc::Version::Two,
+            Some(IccVersion::Four) | None => icc::Version::Four,
+        };
+        let target = match self.to {
+            Format::Dcp => Target::Dcp,
+            Format::Icc => Target::Icc(version),
+            Format::Cube => Target::Cube,
+            Format::Clf => Target::Clf,
+        };
+        let usual = ExportRequest::to(target);
+        ExportRequest {
+            lights: self.lights.clone(),
+            raw_file: self.raw_file.clone(),
+            neutrals: self.neutrals.clone(),
+            space: self.space,
+            shaper: match self.shaper {
+                Some(ShaperName::None) => Shaper::None,
+                Some(ShaperName::Sqrt) | None => usual.shaper,
+            },
+            grid: self.grid.map_or(usual.grid, usize::from),
+            ..usual
+        }
     }
 
     fn refuse_what_does_not_fit(&self) -> Result<()> {
@@ -137,96 +146,6 @@ impl Export {
             }
         }
         Ok(())
-    }
-
-    /// The calibrations to write, coldest first; one but for a DCP.
-    fn calibrations(&self, profile: &Profile) -> Result<Vec<Calibration>> {
-        let most = if self.to == Format::Dcp { 2 } else { 1 };
-        if self.lights.len() > most {
-            let what = if most == 2 { "a DCP has at most two lights" } else { "this format has one light" };
-            bail!("{what}; give fewer to `--light`");
-        }
-        if !self.lights.is_empty() {
-            return self.lights.iter().map(|light| lights::choose(profile, Some(light))).collect();
-        }
-        match profile.calibrations() {
-            [coldest, .., warmest] if most == 2 => Ok(vec![coldest.clone(), warmest.clone()]),
-            _ => Ok(vec![lights::choose(profile, None)?]),
-        }
-    }
-
-    fn dcp(&self, profile: &Profile, calibrations: &[Calibration]) -> Result<(Vec<u8>, Vec<ReadBack>)> {
-        let names: Vec<&str> = calibrations.iter().map(|c| c.light.name.as_str()).collect();
-        let neutrals = match &self.raw_file {
-            Some(raw_file) => {
-                let whites: Vec<_> = calibrations.iter().map(|c| c.light.xy).collect();
-                darkroot::export::neutrals(profile, raw_file, &whites)?
-            }
-            None => self.neutrals.clone(),
-        };
-        if neutrals.len() != calibrations.len() {
-            bail!(
-                "a DCP needs what the sensor makes of the light's white, once for each of its lights ({}): name a raw \
-                 file of the camera with `--for FILE`, or give the camera RGB of the white with `--neutral R,G,B`",
-                names.join(", ")
-            );
-        }
-        let pairs = calibrations.iter().zip(neutrals);
-        let with: Vec<_> = pairs.map(|(calibration, neutral)| WithNeutral { calibration, neutral }).collect();
-        let bytes = Dcp::of(profile, &with)?.write();
-        let mut read = Dcp::read(&bytes)?.lights;
-        // In the file the warmer light is first.
-        if read.len() == 2 && calibrations[0].light.kelvin() > calibrations[1].light.kelvin() {
-            read.swap(0, 1);
-        }
-        let read_back = read.into_iter().map(|light| Box::new(move |rgb| light.xyz(rgb)) as ReadBack);
-        Ok((bytes, read_back.collect()))
-    }
-
-    fn table(&self, profile: &Profile, calibration: &Calibration) -> Result<(Vec<u8>, Vec<ReadBack>)> {
-        let size = self.grid.map_or(icc::SIZE, usize::from);
-        let (bytes, read_back): (Vec<u8>, ReadBack) = match self.to {
-            Format::Cube => {
-                let shaper = match self.shaper {
-                    Some(ShaperName::None) => Shaper::None,
-                    Some(ShaperName::Sqrt) | None => Shaper::SquareRoot,
-                };
-                let space = self.space(RgbSpace::REC2020.linear())?;
-                let settings = cube::Settings { size, shaper, space };
-                let text = cube::write(profile, calibration, &settings);
-                let read = cube::read(&text)?;
-                (text.into_bytes(), Box::new(move |rgb| cube::xyz(&read, &settings, rgb)))
-            }
-            Format::Clf => {
-                let space = self.space(RgbSpace::ACES2065_1)?;
-                if space != space.linear() {
-                    bail!("CLF is written for linear spaces; add `-linear` to the name of the space");
-                }
-                let text = clf::write(profile, calibration, size, &space);
-                let read = Clf::read(&text)?;
-                (text.into_bytes(), Box::new(move |rgb| read.xyz(&space, rgb)))
-            }
-            Format::Icc | Format::Dcp => {
-                let version = match self.icc_version {
-                    Some(IccVersion::Two) => icc::Version::Two,
-                    Some(IccVersion::Four) | None => icc::Version::Four,
-                };
-                let bytes = icc::write(profile, calibration, size, version);
-                let read = Icc::read(&bytes)?;
-                (bytes, Box::new(move |rgb| read.xyz(rgb)))
-            }
-        };
-        Ok((bytes, vec![read_back]))
-    }
-
-    fn space(&self, usual: RgbSpace) -> Result<RgbSpace> {
-        match self.space {
-            None => Ok(usual),
-            Some(OutputSpace::Rgb(space)) => Ok(space),
-            Some(OutputSpace::Camera) => {
-                bail!("the profile leads out of camera RGB; choose another `--space`")
-            }
-        }
     }
 }
 

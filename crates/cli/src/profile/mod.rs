@@ -4,7 +4,6 @@ mod apply;
 mod export;
 mod from_matrix;
 mod from_spectra;
-mod lights;
 mod lint;
 mod list;
 mod make;

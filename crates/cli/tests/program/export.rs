@@ -135,7 +135,7 @@ fn options_that_do_not_belong_to_the_format_are_refused() {
         (&["--to", "clf", "--icc-version", "2", "-o", "a"], &["`--icc-version` belongs to icc"]),
         (&["--to", "icc", "--icc-version", "3", "-o", "a"], &["possible values: 2, 4"]),
         (&["--to", "icc", "--neutral", "1,1,1", "-o", "a"], &["`--neutral` belongs to dcp"]),
-        (&["--to", "icc", "-o", "a"], &["D65, D50, A; choose one with `--light`"]),
+        (&["--to", "icc", "-o", "a"], &["D65, D50, A; choose one", "`--light`"]),
         (&["--to", "icc", "--light", "D65", "A", "-o", "a"], &["one light"]),
         (&["--to", "dcp", "--light", "A", "D50", "D65", "-o", "a"], &["at most two"]),
         (&["--to", "clf", "--light", "A", "--space", "srgb", "-o", "a"], &["linear spaces"]),

@@ -18,8 +18,8 @@ use crate::settings::{ChartShot, Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
 use crate::{Error, Job, frames, from_chart, lut, provenance};
 
-pub use report::Report;
-use report::{blank_report, colours, far_light};
+pub use report::{Report, colours};
+use report::{blank_report, far_light};
 
 /// How far a file has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -60,7 +60,7 @@ pub struct Report {
 }
 
 /// What gave the colours, in words.
-pub(super) fn colours(plan: &Plan, capture: &Capture, chosen: Option<&ChosenProfile<'_>>) -> String {
+pub fn colours(plan: &Plan, capture: &Capture, chosen: Option<&ChosenProfile<'_>>) -> String {
     match (plan.colours, chosen) {
         (Colours::Profile, Some(chosen)) if chosen.estimated => chosen.place.to_string(),
         (Colours::Profile, Some(chosen)) => {

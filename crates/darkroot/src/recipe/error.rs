@@ -122,7 +122,7 @@ pub enum RecipeError {
         message: String,
     },
     /// A name that is no setting, not from a file.
-    #[error("`{name}` is no setting; {}", instead(None))]
+    #[error("`{}` is no setting; {}", quoted(name), instead(Key::nearest(name)))]
     Name {
         /// The name.
         name: String,

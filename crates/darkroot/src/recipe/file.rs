@@ -26,6 +26,12 @@ pub(super) fn read(path: &Path, origin: impl Fn(PathBuf) -> Origin) -> Result<La
     parse(path, &text, origin(path.to_owned())).and_then(|found| found.without_root(path, &text))
 }
 
+/// A recipe that is a text.
+pub(super) fn read_text(text: &str) -> Result<Layer, RecipeError> {
+    let path = Path::new("the recipe");
+    parse(path, text, Origin::Recipe(path.to_owned())).and_then(|found| found.without_root(path, text))
+}
+
 /// A recipe that may be missing.
 pub(super) fn read_if_there(
     path: &Path,

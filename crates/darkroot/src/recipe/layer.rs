@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use super::RecipeError;
+use super::written::written;
+use super::{RecipeError, file};
 use crate::settings::{Key, NotAValue};
 use crate::shown;
 
@@ -90,6 +91,27 @@ impl Layer {
         Ok(layer)
     }
 
+    /// Reads a recipe file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a name or a value that is none.
+    pub fn read(path: &Path) -> Result<Self, RecipeError> {
+        file::read(path, Origin::Recipe)
+    }
+
+    /// What a text of TOML says, as a recipe file has it. Files in it are relative to the current folder.
+    ///
+    /// # Errors
+    /// A name or a value that is none.
+    pub fn parse(text: &str) -> Result<Self, RecipeError> {
+        file::read_text(text)
+    }
+
+    /// As a recipe file, a line for each setting that it says something about.
+    pub fn to_toml(&self) -> String {
+        self.iter().map(|(key, text)| format!("{key} = {}\n", written(key, text))).collect()
+    }
+
     pub(super) fn empty(origin: Origin) -> Self {
         Self { origin, values: BTreeMap::new() }
     }
@@ -107,5 +129,20 @@ impl Layer {
     /// All that it says.
     pub fn iter(&self) -> impl Iterator<Item = (Key, &str)> {
         self.values.iter().map(|(key, text)| (*key, text.as_str()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layer_that_is_written_says_the_same_when_it_is_read() {
+        let text = "exposure = 0.5\nlook = \"linear\"\nwhite-balance = \"2.1,1,1.5\"\nauto-exposure = true\n";
+        let layer = Layer::parse(text).unwrap();
+        assert_eq!(Layer::parse(&layer.to_toml()), Ok(layer.clone()));
+        assert_eq!(layer.iter().count(), 4);
+        let message = Layer::parse("spcae = 1").unwrap_err().to_string();
+        assert!(message.starts_with("the recipe:1: ") && message.contains("`space`?"), "{message}");
     }
 }

@@ -114,7 +114,7 @@ impl Key {
     }
 
     /// The key that a person may have meant by a name that is none.
-    pub(crate) fn nearest(name: &str) -> Option<Self> {
+    pub fn nearest(name: &str) -> Option<Self> {
         let name = name.to_lowercase().replace(['_', ' '], "-");
         if let Some(key) = Self::all().find(|key| key.setting().alias == Some(name.as_str())) {
             return Some(key);

@@ -1,17 +1,21 @@
 //! The calibration of a profile that a person means.
 
-use anyhow::{Result, bail};
 use darkroot_colour::temperature::{daylight_xy, planckian_xy};
 use darkroot_profile::camera::KnownCamera;
 use darkroot_profile::{Calibration, Kind, Light, Profile};
 
+use super::ExportError;
+
 /// The calibration for a light by its name or, between lights, by a temperature; the only one where none is named.
-pub(super) fn choose(profile: &Profile, light: Option<&str>) -> Result<Calibration> {
+///
+/// # Errors
+/// Several lights and no name, a light that the profile does not have, a file of a light that cannot be used.
+pub fn calibration(profile: &Profile, light: Option<&str>) -> Result<Calibration, ExportError> {
     let names: Vec<&str> = profile.calibrations().iter().map(|c| c.light.name.as_str()).collect();
-    let choices = names.join(", ");
+    let names = names.join(", ");
     match (light, profile.calibrations()) {
         (None, [only]) => Ok(only.clone()),
-        (None, _) => bail!("the profile has calibrations for {choices}; choose one with `--light`"),
+        (None, _) => Err(ExportError::SeveralLights { names }),
         (Some(light), all) => {
             if let Some(found) = all.iter().find(|c| c.light.name.eq_ignore_ascii_case(light)) {
                 return Ok(found.clone());
@@ -22,24 +26,22 @@ pub(super) fn choose(profile: &Profile, light: Option<&str>) -> Result<Calibrati
             let kelvin = light.strip_suffix(['K', 'k']).and_then(|n| n.trim().parse::<f64>().ok());
             match kelvin.filter(|k| *k > 0.0 && k.is_finite()) {
                 Some(kelvin) => Ok(between(profile, kelvin)),
-                None => bail!(
-                    "the profile has no light `{light}`; it has {choices}, or take a temperature (4000K)"
-                ),
+                None => Err(ExportError::NoLight { name: light.to_owned(), names }),
             }
         }
     }
 }
 
 /// The calibration for any light, by the camera's sensitivities.
-fn of_camera(known: &KnownCamera, name: &str) -> Result<Calibration> {
-    let source = darkroot::light::find(name)?;
+fn of_camera(known: &KnownCamera, name: &str) -> Result<Calibration, ExportError> {
+    let source = crate::light::find(name).map_err(Box::new)?;
     let model = match &source.spectrum {
         Some(spectrum) => known.model_under(spectrum),
         None => Some(known.model_for(source.light.xy)),
     };
     match model {
         Some(model) => Ok(Calibration::new(source.light, Kind::Spectral, model)),
-        None => bail!("a channel of the camera sees nothing under `{name}`; choose another light"),
+        None => Err(ExportError::BlindChannel { name: name.to_owned() }),
     }
 }
 

@@ -1,4 +1,4 @@
-//! What an export needs besides the profile: the neutrals of a camera, and a file that is written whole.
+//! What a camera makes of whites.
 
 use std::path::Path;
 
@@ -29,12 +29,4 @@ pub fn neutrals(profile: &Profile, raw_file: &Path, whites: &[Xy]) -> Result<Vec
     let neutral = |white: &Xy| matrix.as_ref().and_then(|_| known.neutral_of(*white));
     let all: Option<Vec<[f64; 3]>> = whites.iter().map(neutral).collect();
     all.ok_or_else(|| unusable(NeutralError::NoMatrix))
-}
-
-/// Writes an exported file, whole or not at all. Missing folders are made.
-///
-/// # Errors
-/// A file that exists and is not to be replaced, or that cannot be written.
-pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), Error> {
-    files::write_whole(path, bytes, overwrite)
 }

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# Tries what build.sh made, each where nothing of ours is: `try.sh [ROOT]`. ROOT is a folder with a small Debian, which debootstrap
+# makes if it is missing (as root). Each develops the sample, and is taken away without a trace.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=$(realpath -m "${1:-target/clean-root}")
+sample="$PWD/samples/still-life.nef"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# Every file below a folder, but for what a package manager writes about itself.
+listing() { (cd "$1" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./var/lib/dpkg -o -path ./var/cache -o -path ./var/log -o -path ./work \) -prune -o -print | sort); }
+
+# A picture that is one, of the sample's size.
+is_picture() { [ "$(od -An -tx1 -N2 "$1" | tr -d ' ')" = ffd8 ] && [ "$(stat -c %s "$1")" -gt 20000 ]; }
+
+try_deb() {
+    [ -d "$root/usr" ] || debootstrap --variant=minbase stable "$root"
+    listing "$root" >"$scratch/before"
+    mkdir -p "$root/work"
+    cp dist/darkroot_*.deb "$sample" "$root/work"
+    chroot "$root" sh -c 'dpkg -i /work/darkroot_*.deb >/dev/null'
+    chroot "$root" sh -ec 'cd /work; darkroot --version; darkroot -q develop still-life.nef -o a.jpg; darkroot -q batch . -o out; test -s out/still-life.jpg
+        test -s /usr/share/man/man1/darkroot-develop.1.gz; test -s /usr/share/bash-completion/completions/darkroot'
+    is_picture "$root/work/a.jpg"
+    chroot "$root" dpkg -P darkroot >/dev/null
+    rm -rf "$root/work"
+    listing "$root" >"$scratch/after"
+    diff "$scratch/before" "$scratch/after"
+    echo "deb: installed, developed, removed without a trace"
+}
+
+# The steps of package/Dockerfile, in that root.
+try_image() {
+    mkdir -p "$root/work"
+    cp dist/darkroot_*.deb "$sample" "$root/work"
+    chroot "$root" sh -ec 'dpkg -i /work/darkroot_*.deb >/dev/null; darkroot --version >/dev/null; mkdir -m 777 /work/out'
+    chroot --userspec=65534:65534 "$root" darkroot -q batch /work -o /work/out --shard 1/1 --memory 1G
+    is_picture "$root/work/out/still-life.jpg"
+    chroot "$root" dpkg -P darkroot >/dev/null
+    rm -rf "$root/work"
+    echo "image: its steps run, and a job of nobody's develops"
+}
+
+# A root with nothing in it but the program.
+try_static() {
+    mkdir "$scratch/empty"
+    tar -C "$scratch/empty" -xzf dist/darkroot-*-static-*.tar.gz --strip-components 1
+    cp "$sample" "$scratch/empty"
+    chroot "$scratch/empty" /darkroot -q develop /still-life.nef -o /a.jpg
+    is_picture "$scratch/empty/a.jpg"
+    echo "static: develops where there is nothing else at all"
+}
+
+try_wheel() {
+    python3 -m venv "$scratch/venv"
+    "$scratch/venv/bin/pip" install --quiet numpy
+    listing "$scratch/venv" | grep -v __pycache__ >"$scratch/before"
+    "$scratch/venv/bin/pip" install --quiet --no-index --no-deps dist/darkroot-*.whl
+    "$scratch/venv/bin/darkroot" -q develop "$sample" -o "$scratch/a.jpg"
+    "$scratch/venv/bin/python" -c "
+import sys, darkroot
+darkroot.develop_file(sys.argv[1], sys.argv[2])
+assert darkroot.batch(sys.argv[1], sys.argv[3]).done == 1" "$sample" "$scratch/b.jpg" "$scratch/out"
+    cmp "$scratch/a.jpg" "$scratch/b.jpg"
+    cmp "$scratch/a.jpg" "$scratch/out/still-life.jpg"
+    is_picture "$scratch/a.jpg"
+    "$scratch/venv/bin/pip" uninstall --quiet -y darkroot
+    listing "$scratch/venv" | grep -v __pycache__ >"$scratch/after"
+    diff "$scratch/before" "$scratch/after"
+    echo "wheel: installed, developed by program, function and batch, removed without a trace"
+}
+
+ls dist/darkroot-*.whl >/dev/null 2>&1 && try_wheel
+ls dist/darkroot_*.deb >/dev/null 2>&1 && try_deb && try_image
+ls dist/darkroot-*-static-*.tar.gz >/dev/null 2>&1 && try_static
