@@ -96,11 +96,10 @@ impl Curves {
 /// Bits of the greatest half that is not more than a number of at least 0, and how far the number is on the way to the next.
 fn half_below(v: f32) -> (u32, f32) {
     let greatest = half(GREATEST as u16);
+    // What is no number is 0.
+    let v = v.max(0.0);
     if v >= greatest {
         return (GREATEST, 0.0);
-    }
-    if !(v > 0.0) {
-        return (0, 0.0);
     }
     let bits = v.to_bits();
     let exponent = (bits >> 23) as i32 - 127 + 15;
