@@ -89,6 +89,8 @@ fn pictures(put: &dyn Fn(&str, &str, &[u8])) {
 /// What people write into raw files and beside them.
 fn descriptions(put: &dyn Fn(&str, &str, &[u8])) {
     put("xmp", "xmp", XMP.as_bytes());
+    put("lut", "cube", b"TITLE \"x\"\nLUT_1D_SIZE 2\nLUT_1D_INPUT_RANGE 0 2\nLUT_3D_SIZE 2\nDOMAIN_MIN 0 0 0\n0 0 0\n1 1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
+    put("lut", "clf", CLF.as_bytes());
     let datasets =
         b"\x1c\x01\x5a\0\x03\x1b%G\x1c\x02\x05\0\x03Fog\x1c\x02\x19\0\x03fog\x1c\x02\x37\0\x0820261127";
     put("iptc", "iim", datasets);
@@ -107,6 +109,11 @@ fn deliveries(put: &dyn Fn(&str, &str, &[u8])) {
         put("delivered", format.extension(), &bytes);
     }
 }
+
+const CLF: &str = "<ProcessList id=\"1\" compCLFversion=\"3\"><Matrix inBitDepth=\"8i\" outBitDepth=\"16f\"><Array dim=\"3 3\">1 0 0 0 1 0 \
+    0 0 1</Array></Matrix><Log inBitDepth=\"32f\" outBitDepth=\"32f\" style=\"cameraLinToLog\"><LogParams base=\"2\" linSideBreak=\"0.1\"/></Log>\
+    <LUT1D inBitDepth=\"32f\" outBitDepth=\"10i\"><Array dim=\"2 1\">0 1023</Array></LUT1D><Range inBitDepth=\"32f\" outBitDepth=\"32f\">\
+    <minInValue>0</minInValue><minOutValue>0</minOutValue></Range></ProcessList>";
 
 const XMP: &str = "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\
     <rdf:Description xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" xmlns:dc=\"http://purl.org/dc/elements/1.1/\" xmp:Rating=\"4\">\

@@ -11,6 +11,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use super::LutFault;
 
+/// Each costs every pixel its time.
+const MOST_STEPS: usize = 64;
 /// No file has more elements.
 const MOST_NODES: u32 = 10_000;
 
@@ -36,7 +38,11 @@ pub(super) fn parse(text: &str) -> Result<Lut, LutFault> {
             other => return Err(LutFault::Step { element: other.to_owned() }),
         }
     }
-    if steps.is_empty() { Err(LutFault::Empty) } else { Ok(Lut { steps }) }
+    match steps.len() {
+        0 => Err(LutFault::Empty),
+        1..=MOST_STEPS => Ok(Lut { steps }),
+        count => Err(LutFault::Steps { count, most: MOST_STEPS }),
+    }
 }
 
 fn fault(step: &'static str, part: &'static str) -> LutFault {

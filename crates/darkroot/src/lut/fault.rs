@@ -64,6 +64,14 @@ pub enum LutFault {
         /// What of it.
         part: &'static str,
     },
+    /// More steps than a picture has time for.
+    #[error("has {count} steps; {most} can be used")]
+    Steps {
+        /// Steps found.
+        count: usize,
+        /// The most that can be used.
+        most: usize,
+    },
     /// No step at all.
     #[error("holds no step")]
     Empty,

@@ -72,6 +72,7 @@ fn broken_files_are_sentences() {
         (good.clone(), "ProcessList", "Process"),
         (good, "</Array>", "<Array>"),
         (clf("<Log inBitDepth=\"32f\" outBitDepth=\"32f\" style=\"log2\"/>"), "log2", "log3"),
+        (clf(&"<Log inBitDepth=\"32f\" outBitDepth=\"32f\" style=\"log2\"/>".repeat(65)), "test", "many"),
         (clf(""), "test", "nothing"),
     ];
     for (text, from, to) in cases {
