@@ -109,7 +109,7 @@ fn what_is_chosen_from_the_whole_picture_does_not_depend_on_threads_or_tiles() {
             ..Recipe::default()
         };
         for (crop, demosaic) in [(Crop::Active, Demosaic::Bilinear), (Crop::Default, Demosaic::Best)] {
-            let recipe = Recipe { crop, demosaic, ..recipe };
+            let recipe = Recipe { crop, demosaic, ..recipe.clone() };
             check(&capture, Some(&profile), &recipe, &[(13, 9), (31, 8), (53, 1)], name);
         }
     }
