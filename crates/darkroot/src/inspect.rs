@@ -33,7 +33,7 @@ pub struct Inspection {
     pub frame: [usize; 2],
     /// Active area: x, y, width, height.
     pub active_area: [usize; 4],
-    /// Default crop: x, y, width, height.
+    /// What is shown: x, y, width, height.
     pub crop: [usize; 4],
     /// Orientation as Exif counts it, 1..=8.
     pub orientation: u16,
@@ -178,7 +178,7 @@ pub fn inspect_photo(
         decoder: capture.source.decoder.clone(),
         frame: [size.width, size.height],
         active_area: rect(capture.active_area),
-        crop: rect(capture.default_crop),
+        crop: rect(capture.shown()),
         orientation: capture.orientation.exif(),
         filters: match capture.counts.layout() {
             Layout::Cfa(cfa) => cfa.to_string(),

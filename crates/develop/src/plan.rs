@@ -21,7 +21,7 @@ use crate::light::LinearLight;
 use crate::lut;
 use crate::mend::Mends;
 use crate::noise::Noise;
-use crate::recipe::{Bits, Denoise, Exposure, Highlights, HotPixels, Look, OutputSpace, Recipe};
+use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, Look, OutputSpace, Recipe};
 use crate::sharpen::Sharpener;
 use crate::tally::{Clipped, Tally};
 use crate::tone::Curve;
@@ -148,6 +148,12 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let denoiser = denoiser(analysis, recipe.denoise, as_it_is, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
     notes.extend(laid.lens_note(capture));
+    if recipe.crop == Crop::Default && capture.user_crop.is_some() {
+        notes.push(
+            "the picture is cut as the file says (DefaultUserCrop); a crop of 100% shows all of it"
+                .to_owned(),
+        );
+    }
     let lateral = lateral(analysis, &recipe.geometry, measuring || demosaic == Method::None, &laid);
     notes.extend(lateral.map(|lateral| lateral.note()));
     let is_uneven = analysis.light().is_corrected()

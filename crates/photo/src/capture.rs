@@ -76,6 +76,8 @@ pub struct Capture {
     pub active_area: Rect,
     /// What the maker shows, inside the active area.
     pub default_crop: Rect,
+    /// The part of that which was chosen, in the camera or by who edited the file (DNG DefaultUserCrop); `None` for all of it.
+    pub user_crop: Option<Rect>,
     /// How to turn the picture upright.
     pub orientation: Orientation,
     /// Width of a pixel over its height; 1 for nearly every camera.
@@ -113,6 +115,11 @@ pub struct Capture {
 }
 
 impl Capture {
+    /// What is shown where nobody asks for another part.
+    pub fn shown(&self) -> Rect {
+        self.user_crop.unwrap_or(self.default_crop)
+    }
+
     /// A capture of which nothing is known but its samples: all of the frame is shown as it stands, black is 0 and white
     /// 1, and no matrix, light or metadata is there.
     pub fn bare(counts: Counts) -> Self {
@@ -124,6 +131,7 @@ impl Capture {
             counts,
             active_area: frame,
             default_crop: frame,
+            user_crop: None,
             orientation: Orientation::Upright,
             pixel_aspect: 1.0,
             black: BlackLevel::uniform(0.0),

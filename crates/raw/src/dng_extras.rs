@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use darkroot_photo::Rect;
+
 use crate::pieces::tag;
 use crate::screen::DNG_VERSION;
 use crate::tiff::Directories;
@@ -42,6 +44,26 @@ pub(crate) fn notes(tiff: &Directories<'_>) -> Vec<String> {
         names => format!("the file also holds {what} ({names}), which is not used"),
     }));
     notes
+}
+
+/// DNG DefaultUserCrop: top, left, bottom and right as shares of the default crop.
+const USER_CROP: u16 = 0xc7b5;
+
+/// The part of the default crop that the file says was chosen; `None` where it is all of it, or none.
+pub(crate) fn user_crop(tiff: &Directories<'_>, shown: Rect) -> Option<Rect> {
+    let entry = tiff.all.iter().flat_map(|d| &d.entries).find(|e| e.tag == USER_CROP)?;
+    let numbers = tiff.longs(tiff.value(entry, 32)?);
+    let shares: Vec<f64> = numbers.as_chunks().0.iter().map(|&[n, d]| f64::from(n) / f64::from(d)).collect();
+    let [top, left, bottom, right] = shares[..] else { return None };
+    let within = |from: f64, to: f64| from >= 0.0 && from < to && to <= 1.0;
+    if !within(top, bottom) || !within(left, right) {
+        return None;
+    }
+    let pixels = |share: f64, side: usize| (share * side as f64).round() as usize;
+    let (x, y) = (pixels(left, shown.width), pixels(top, shown.height));
+    let (width, height) = (pixels(right, shown.width) - x, pixels(bottom, shown.height) - y);
+    let crop = Rect { x: shown.x + x, y: shown.y + y, width, height };
+    (width > 0 && height > 0 && crop != shown).then_some(crop)
 }
 
 /// What a picture is besides the main one and previews (DNG 1.7, NewSubFileType).

@@ -285,6 +285,8 @@ fn describe(
         notes.push(format!("the file names no white level; {} is assumed", info.white_level.max()));
     }
     notes.extend(tiff.map(dng_extras::notes).unwrap_or_default());
+    let default_crop = rect(info.crop, size);
+    let user_crop = tiff.filter(|_| is_dng).and_then(|tiff| dng_extras::user_crop(tiff, default_crop));
     let white = white_level(info, &layout);
     let (calibrations, analog_balance) = calibrations(&info.color_matrices);
     let as_shot = as_shot(meta, info);
@@ -303,7 +305,8 @@ fn describe(
         camera: camera(meta),
         counts: Counts::U16(Mosaic { size, layout, samples: Vec::new() }),
         active_area: rect(info.active_area, size),
-        default_crop: rect(info.crop, size),
+        default_crop,
+        user_crop,
         orientation: Orientation::from_exif(info.orientation.exif()),
         pixel_aspect: pixel_aspect(meta, info),
         black: black_level(&info.black_level)?,

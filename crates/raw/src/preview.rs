@@ -104,6 +104,7 @@ pub fn decode_preview(bytes: &[u8], limits: &Limits) -> Result<Option<Capture>, 
             space.name, size.width, size.height
         )],
         default_crop: Rect::full(size),
+        user_crop: None,
         active_area: Rect::full(size),
         ..Capture::bare(Counts::U16(Mosaic { size, layout: Layout::Rgb, samples }))
     }))

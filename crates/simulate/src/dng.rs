@@ -96,6 +96,12 @@ fn raw_directory(capture: &Capture, storage: Storage) -> Ifd {
         .longs(tag::DEFAULT_CROP_SIZE, &[crop.width, crop.height])
         .fractions(tag::DEFAULT_SCALE, &[capture.pixel_aspect, 1.0])
         .longs(tag::WHITE_LEVEL, &capture.white.0.map(|w| w.round() as usize)[..planes]);
+    if let Some(user) = capture.user_crop {
+        let share = |at: usize, from: usize, side: usize| (at - from) as f64 / side as f64;
+        let (across, down) = (|x| share(x, crop.x, crop.width), |y| share(y, crop.y, crop.height));
+        let shares = [down(user.y), across(user.x), down(user.bottom()), across(user.right())];
+        ifd.fractions(tag::DEFAULT_USER_CROP, &shares);
+    }
     match capture.counts.layout() {
         Layout::Cfa(cfa) => cfa_tags(&mut ifd, &cfa.shifted(area.x, area.y)),
         Layout::Monochrome | Layout::Rgb => {

@@ -114,6 +114,7 @@ pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
         counts: Counts::U16(Mosaic { size, layout: camera.layout.clone(), samples }),
         active_area,
         default_crop,
+        user_crop: None,
         orientation: exposure.orientation,
         pixel_aspect: 1.0,
         black: camera.black.clone(),

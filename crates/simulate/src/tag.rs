@@ -58,3 +58,4 @@ pub(crate) const LINEAR_RESPONSE_LIMIT: u16 = 50734;
 pub(crate) const CALIBRATION_ILLUMINANT_1: u16 = 50778;
 pub(crate) const ACTIVE_AREA: u16 = 50829;
 pub(crate) const FORWARD_MATRIX_1: u16 = 50964;
+pub(crate) const DEFAULT_USER_CROP: u16 = 51125;

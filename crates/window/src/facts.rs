@@ -104,7 +104,7 @@ fn read(place: &Place) -> Head {
     };
     let number = |tag| capture.metadata.number(Directory::Exif, tag).filter(|v| *v > 0.0);
     let text = |tag| capture.metadata.text(Directory::Exif, tag).map(darkroot::quoted);
-    let size = capture.orientation.applied_to(capture.default_crop.size());
+    let size = capture.orientation.applied_to(capture.shown().size());
     Head {
         camera: Some(darkroot::quoted(&capture.camera.name())),
         date: text(tag::DATE_TIME_ORIGINAL),

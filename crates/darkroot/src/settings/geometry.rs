@@ -125,14 +125,14 @@ pub(super) const CROP: Setting = Setting {
     alias: None,
     noun: "crop",
     kind: Kind::Text {
-        form: "default (what the maker shows), active (everything that light falls on), a ratio of sides (3:2), a share \
+        form: "default (what the maker or the file shows), active (everything that light falls on), a ratio of sides (3:2), a share \
                (80%), or a rectangle X,Y,WIDTH,HEIGHT in pixels of the developed picture",
         example: "\"3:2\" or \"120,80,3000,2000\"",
     },
     default: "default",
     group: Group::Picture,
     placeholder: "CROP",
-    help: "Which part of the frame: default (what the maker shows), active (everything that light falls on), 3:2, 80% of \
+    help: "Which part of the frame: default (what the maker or the file shows), active (everything that light falls on), 3:2, 80% of \
            each side, or X,Y,WIDTH,HEIGHT in pixels",
     changes: Changes::Picture,
     set: |to, text| put(&mut to.recipe.crop, crop(text)),

@@ -6,7 +6,7 @@ use darkroot_lens::Corrections;
 /// never shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Crop {
-    /// What the maker shows.
+    /// What the maker shows, or the part of it that was chosen in the camera (DNG DefaultUserCrop).
     #[default]
     Default,
     /// Everything that light falls on.

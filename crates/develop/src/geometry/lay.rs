@@ -66,7 +66,11 @@ impl Laid {
 /// # Errors
 /// A crop, corners or a size that cannot be.
 pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bool) -> Result<Laid, Error> {
-    let shown = if crop == Crop::Active { capture.active_area } else { capture.default_crop };
+    let shown = match crop {
+        Crop::Active => capture.active_area,
+        Crop::Default => capture.shown(),
+        Crop::Aspect(_) | Crop::Share(_) | Crop::Rect { .. } => capture.default_crop,
+    };
     let orientation = oriented(capture.orientation, asked.turn, asked.flip);
     let canvas = orientation.applied_to(shown.size());
     let area = capture.active_area;
