@@ -73,7 +73,9 @@ print(f"{before:.1f} MiB after 100 opens, {resident():.1f} MiB after 1,000 more"
 
 def python(code, *arguments):
     """What a process of its own prints."""
-    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, check=True
+    ).stdout
 
 
 def main():

@@ -7,10 +7,10 @@ import sys
 import threading
 import time
 
+import conftest
 import numpy
 import pytest
 
-import conftest
 import darkroot
 
 EXAMPLES = conftest.ROOT / "python/examples"
