@@ -146,6 +146,9 @@ class Photo(_core.Photo):
     def __exit__(self, *_):
         self.close()
 
+    def __reduce__(self):
+        raise TypeError("a photo does not go to another process; send its path or its bytes, and open it there")
+
     def __repr__(self):
         height, width = self.mosaic.shape[:2]
         return f"<darkroot.Photo {os.fspath(self.name)!r}: {self.camera}, {width} x {height}>"
