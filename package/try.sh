@@ -15,7 +15,6 @@ listing() { (cd "$1" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./v
 is_picture() { [ "$(od -An -tx1 -N2 "$1" | tr -d ' ')" = ffd8 ] && [ "$(stat -c %s "$1")" -gt 20000 ]; }
 
 try_deb() {
-    [ -d "$root/usr" ] || debootstrap --variant=minbase stable "$root"
     listing "$root" >"$scratch/before"
     mkdir -p "$root/try"
     cp dist/darkroot_*.deb "$sample" "$root/try"
@@ -71,6 +70,14 @@ assert darkroot.batch(sys.argv[1], sys.argv[3]).done == 1" "$sample" "$scratch/b
     echo "wheel: installed, developed by program, function and batch, removed without a trace"
 }
 
-ls dist/darkroot-*.whl >/dev/null 2>&1 && try_wheel
-ls dist/darkroot_*.deb >/dev/null 2>&1 && try_deb && try_image
-ls dist/darkroot-*-static-*.tar.gz >/dev/null 2>&1 && try_static
+# In an `&&` list bash would not stop at what fails inside.
+if compgen -G "dist/darkroot-*.whl" >/dev/null; then try_wheel; fi
+if compgen -G "dist/darkroot_*.deb" >/dev/null; then
+    [ -d "$root/usr" ] || debootstrap --variant=minbase stable "$root"
+    # Programs that start workers find themselves there.
+    mount -t proc proc "$root/proc"
+    trap 'umount "$root/proc"; rm -rf "$scratch"' EXIT
+    try_deb
+    try_image
+fi
+if compgen -G "dist/darkroot-*-static-*.tar.gz" >/dev/null; then try_static; fi

@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 #: Pairs of runs.
-RUNS = 7
+RUNS = 5
 
 OPEN_TO_LINEAR = {
     "darkroot": "import darkroot; work = lambda: darkroot.develop(path, look='linear', dtype='uint16')",
