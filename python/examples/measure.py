@@ -125,6 +125,8 @@ def main():
     said = parser.parse_args()
     engines = {"ray": by_ray, "dask": by_dask}
     os.environ["PYTHONPATH"] = str(pathlib.Path(__file__).parent)
+    # A machine that is busy with the work itself is no dead one.
+    os.environ.update(RAY_health_check_timeout_ms="60000", RAY_health_check_failure_threshold="20")
     with tempfile.TemporaryDirectory() as place:
         folder = pathlib.Path(place)
         make(said.make_raw, folder / "in", said.files)
