@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Licences of what is inside of the program: `licences.py [PACKAGE]` prints a list of every crate with its licence, then their texts.
+"""Licences of what is inside: `licences.py [PACKAGE ...]` prints every crate of darkroot-cli with its licence, then the texts.
 
 What `cargo metadata` says and what the crates bring along, for the platform that it runs on; each text once, with the crates that
 it belongs to.
@@ -15,8 +15,8 @@ import sys
 NAMES = ("licen", "copying", "notice", "copyright", "unlicense")
 
 
-def packages(root):
-    """What goes into a package of the workspace: crates that are linked, not those that only build."""
+def packages(roots):
+    """What goes into packages of the workspace: crates that are linked, not those that only build."""
     host = next(
         line.split()[1]
         for line in subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout.splitlines()
@@ -26,7 +26,7 @@ def packages(root):
     told = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
     by_id = {package["id"]: package for package in told["packages"]}
     nodes = {node["id"]: node for node in told["resolve"]["nodes"]}
-    waiting = [package["id"] for package in told["packages"] if package["name"] == root]
+    waiting = [package["id"] for package in told["packages"] if package["name"] in roots]
     found = set()
     while waiting:
         one = waiting.pop()
@@ -42,10 +42,10 @@ def packages(root):
 
 def main():
     """Prints the list and the texts."""
-    root = sys.argv[1] if len(sys.argv) > 1 else "darkroot-cli"
+    roots = sys.argv[1:] or ["darkroot-cli"]
     texts = collections.defaultdict(list)
-    print(f"What is inside of {root} beside Darkroot's own code, which is under LGPL-3.0-or-later:\n")
-    for package in packages(root):
+    print(f"What is inside of {' and '.join(roots)} beside Darkroot's own code, which is under LGPL-3.0-or-later:\n")
+    for package in packages(roots):
         name = f"{package['name']} {package['version']}"
         print(f"{name:40} {package['license'] or package['license_file'] or 'see its text'}")
         for path in sorted(pathlib.Path(package["manifest_path"]).parent.iterdir()):

@@ -9,22 +9,21 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
 # Every file below a folder, but for what a package manager writes about itself.
-listing() { (cd "$1" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./var/lib/dpkg -o -path ./var/cache -o -path ./var/log -o -path ./work \) -prune -o -print | sort); }
+listing() { (cd "$1" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./var/lib/dpkg -o -path ./var/cache -o -path ./var/log -o -path ./try \) -prune -o -print | sort); }
 
 # A picture that is one, of the sample's size.
 is_picture() { [ "$(od -An -tx1 -N2 "$1" | tr -d ' ')" = ffd8 ] && [ "$(stat -c %s "$1")" -gt 20000 ]; }
 
 try_deb() {
-    [ -d "$root/usr" ] || debootstrap --variant=minbase stable "$root"
     listing "$root" >"$scratch/before"
-    mkdir -p "$root/work"
-    cp dist/darkroot_*.deb "$sample" "$root/work"
-    chroot "$root" sh -c 'dpkg -i /work/darkroot_*.deb >/dev/null'
-    chroot "$root" sh -ec 'cd /work; darkroot --version; darkroot -q develop still-life.nef -o a.jpg; darkroot -q batch . -o out; test -s out/still-life.jpg
+    mkdir -p "$root/try"
+    cp dist/darkroot_*.deb "$sample" "$root/try"
+    chroot "$root" sh -c 'dpkg -i /try/darkroot_*.deb >/dev/null'
+    chroot "$root" sh -ec 'cd /try; darkroot --version; darkroot -q develop still-life.nef -o a.jpg; darkroot -q batch . -o out; test -s out/still-life.jpg
         test -s /usr/share/man/man1/darkroot-develop.1.gz; test -s /usr/share/bash-completion/completions/darkroot'
-    is_picture "$root/work/a.jpg"
+    is_picture "$root/try/a.jpg"
     chroot "$root" dpkg -P darkroot >/dev/null
-    rm -rf "$root/work"
+    rm -rf "$root/try"
     listing "$root" >"$scratch/after"
     diff "$scratch/before" "$scratch/after"
     echo "deb: installed, developed, removed without a trace"
@@ -32,13 +31,13 @@ try_deb() {
 
 # The steps of package/Dockerfile, in that root.
 try_image() {
-    mkdir -p "$root/work"
-    cp dist/darkroot_*.deb "$sample" "$root/work"
-    chroot "$root" sh -ec 'dpkg -i /work/darkroot_*.deb >/dev/null; darkroot --version >/dev/null; mkdir -m 777 /work/out'
-    chroot --userspec=65534:65534 "$root" darkroot -q batch /work -o /work/out --shard 1/1 --memory 1G
-    is_picture "$root/work/out/still-life.jpg"
+    mkdir -p "$root/try"
+    cp dist/darkroot_*.deb "$sample" "$root/try"
+    chroot "$root" sh -ec 'dpkg -i /try/darkroot_*.deb >/dev/null; darkroot --version >/dev/null; mkdir -m 777 /try/out'
+    chroot --userspec=65534:65534 "$root" darkroot -q batch /try -o /try/out --shard 1/1 --memory 1G
+    is_picture "$root/try/out/still-life.jpg"
     chroot "$root" dpkg -P darkroot >/dev/null
-    rm -rf "$root/work"
+    rm -rf "$root/try"
     echo "image: its steps run, and a job of nobody's develops"
 }
 
@@ -71,6 +70,14 @@ assert darkroot.batch(sys.argv[1], sys.argv[3]).done == 1" "$sample" "$scratch/b
     echo "wheel: installed, developed by program, function and batch, removed without a trace"
 }
 
-ls dist/darkroot-*.whl >/dev/null 2>&1 && try_wheel
-ls dist/darkroot_*.deb >/dev/null 2>&1 && try_deb && try_image
-ls dist/darkroot-*-static-*.tar.gz >/dev/null 2>&1 && try_static
+# In an `&&` list bash would not stop at what fails inside.
+if compgen -G "dist/darkroot-*.whl" >/dev/null; then try_wheel; fi
+if compgen -G "dist/darkroot_*.deb" >/dev/null; then
+    [ -d "$root/usr" ] || debootstrap --variant=minbase stable "$root"
+    # Programs that start workers find themselves there.
+    mount -t proc proc "$root/proc"
+    trap 'umount "$root/proc"; rm -rf "$scratch"' EXIT
+    try_deb
+    try_image
+fi
+if compgen -G "dist/darkroot-*-static-*.tar.gz" >/dev/null; then try_static; fi

@@ -11,6 +11,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 try:
     import maturin
@@ -44,6 +45,12 @@ def program():
     placed = scripts / pathlib.Path(made).name
     if shutil.which("strip"):
         subprocess.run(["strip", placed], check=False)
+    # What is inside of it and of the extension, with its licences.
+    doc = ROOT / "target/wheel/data/share/doc/darkroot"
+    doc.mkdir(parents=True, exist_ok=True)
+    command = [sys.executable, ROOT / "package/licences.py", "darkroot-cli", "darkroot-python"]
+    told = subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    (doc / "THIRD-PARTY.txt").write_bytes(told.stdout)
     return placed
 
 

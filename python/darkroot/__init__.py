@@ -11,12 +11,13 @@ Everything is told by :class:`Error` and those made from it, which say whose fau
 where the keywords come from.
 """
 
-from . import _interpreter as _interpreter  # First: it refuses interpreters in which numpy could not work either.
+# It refuses interpreters in which neither this nor numpy could work, before anything else is loaded.
+from . import _interpreter as _interpreter
 
+# isort: split
 import atexit as _atexit
 
 from . import _core
-from ._core import Cancel, Recipe, __version__
 from ._batch import Summary, batch
 from ._chart import (
     FoundChart,
@@ -27,6 +28,8 @@ from ._chart import (
     measure_chart,
     verify,
 )
+from ._core import Cancel, Recipe
+from ._core import __version__ as __version__
 from ._develop import camera_rgb, develop, develop_file, inspect, settings
 from ._errors import (
     Cancelled,

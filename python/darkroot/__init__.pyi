@@ -127,7 +127,6 @@ def develop(
     recipe: RecipeLike | None = None,
     threads: int | None = None,
     cancel: Cancel | None = None,
-    decoder: Literal["flashraw", "rawloader"] = "flashraw",
     **settings: Unpack[Settings],
 ) -> NDArray[Any]: ...
 def camera_rgb(

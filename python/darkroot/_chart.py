@@ -202,7 +202,9 @@ def make_profile(
     paths = [shots] if isinstance(shots, (str, os.PathLike)) else list(shots)
     lights = [light] * len(paths) if isinstance(light, str) else list(light)
     if len(lights) != len(paths) or not paths:
-        raise SettingsError(f"there are {len(paths)} shots and {len(lights)} lights; give one light for all, or one each")
+        raise SettingsError(
+            f"there are {len(paths)} shots and {len(lights)} lights; give one light for all, or one each"
+        )
     named = [(os.fspath(path), one) for path, one in zip(paths, lights)]
     text, report, told = _core.make_profile(
         named, _said(chart, reference, **how), average=average, as_camera=as_camera, model=model, date=date

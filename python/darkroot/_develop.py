@@ -6,12 +6,13 @@ from . import _core, _storage, _threads
 from ._photo import open
 
 
-def develop(path, *, dtype=None, scale=1, region=None, recipe=None, threads=None, cancel=None, decoder="flashraw", **settings):
+def develop(path, *, dtype=None, scale=1, region=None, recipe=None, threads=None, cancel=None, **settings):
     """Opens a file and develops it: :func:`open` and :meth:`Photo.develop` in one.
 
     >>> darkroot.develop(sample, scale=1/8, look="vivid").shape
     (60, 90, 3)
     """
+    decoder = settings.pop("decoder", "flashraw")
     with open(path, decoder=decoder, threads=threads, cancel=cancel) as photo:
         return photo.develop(
             dtype=dtype, scale=scale, region=region, recipe=recipe, threads=threads, cancel=cancel, **settings
@@ -28,9 +29,7 @@ def camera_rgb(path, *, scale=1, region=None, threads=None, cancel=None, **setti
         return photo.camera_rgb(scale=scale, region=region, threads=threads, cancel=cancel, **settings)
 
 
-def develop_file(
-    src, dst, *, overwrite=False, recipe=None, folders=False, threads=None, cancel=None, **settings
-):
+def develop_file(src, dst, *, overwrite=False, recipe=None, folders=False, threads=None, cancel=None, **settings):
     """Develops a file into a picture, as ``darkroot develop SRC -o DST`` does, bit for bit.
 
     The ending of ``dst`` names the format: .jpg, .png, .tif, .webp, .avif, .exr or .jxl. It is absent, the old one, or the

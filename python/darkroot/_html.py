@@ -63,7 +63,11 @@ def page(text):
 def light(figures, patches):
     """Figures of a profile under one light, with a plot of its patches."""
     rows = [("model", figures["model"]), ("temperature", f"{figures['kelvin']:.0f} K")]
-    for name, words in [("left_out", "colours left out"), ("held_out", "other colours"), ("training", "colours of the fit")]:
+    for name, words in [
+        ("left_out", "colours left out"),
+        ("held_out", "other colours"),
+        ("training", "colours of the fit"),
+    ]:
         if figures[name]:
             rows.append((f"dE2000, {words}", "mean {mean:.2f}, 95 % {p95:.2f}, max {max:.2f}".format(**figures[name])))
     plot = swatches([p["name"] for p in patches], [p["xyz"] for p in patches], [p["de2000"] for p in patches])
@@ -109,4 +113,8 @@ def swatches(names, colours, errors=None):
         parts.append(f'<text x="{x}" y="{y + side}" font-size="9">{words}</text>')
     rows = -(-len(names) // columns)
     size = f'width="{columns * side}" height="{rows * (side + 14)}"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">{"".join(parts)}</svg>' if parts else ""
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">{"".join(parts)}</svg>'
+        if parts
+        else ""
+    )

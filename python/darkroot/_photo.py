@@ -53,9 +53,7 @@ class Photo(_core.Photo):
         """
         return super().light(threads=_threads.checked(threads))
 
-    def develop(
-        self, *, dtype=None, scale=1, region=None, recipe=None, threads=None, cancel=None, **settings
-    ):
+    def develop(self, *, dtype=None, scale=1, region=None, recipe=None, threads=None, cancel=None, **settings):
         """Develops the picture, or a part of it, upright.
 
         Settings are those of the program with underscores for dashes, from one table: :func:`darkroot.settings` lists names,
@@ -147,6 +145,9 @@ class Photo(_core.Photo):
 
     def __exit__(self, *_):
         self.close()
+
+    def __reduce__(self):
+        raise TypeError("a photo does not go to another process; send its path or its bytes, and open it there")
 
     def __repr__(self):
         height, width = self.mosaic.shape[:2]

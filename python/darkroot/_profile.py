@@ -134,7 +134,11 @@ class Profile(_core.Profile):
 
     def _repr_html_(self):
         origin = self.origin
-        rows = [("camera", self.camera or "any"), ("made from", origin["summary"] or None), ("date", origin["date"] or None)]
+        rows = [
+            ("camera", self.camera or "any"),
+            ("made from", origin["summary"] or None),
+            ("date", origin["date"] or None),
+        ]
         parts = [f"<h3>{html.escape(self.camera or 'Profile')}</h3>", _html.table(rows)]
         for light in self.lights:
             parts.append(_html.light(self.figures(light), self.patches(light)))

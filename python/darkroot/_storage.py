@@ -68,4 +68,3 @@ def write(url, make, overwrite):
                 filesystem.rm_file(unfinished)
             raise StorageError(f"{url}: cannot be written: {fault}") from fault
     return result
-

@@ -17,7 +17,6 @@ from imageio.core.v3_plugin_api import ImageProperties, PluginV3
 import darkroot
 
 
-
 class Plugin(PluginV3):
     """Reads raw files. Keywords of ``imread`` are those of :meth:`darkroot.Photo.develop`."""
 

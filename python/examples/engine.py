@@ -18,7 +18,9 @@ def rows(folder, out, ending="jpg"):
         if path.suffix[1:].lower() in darkroot.ENDINGS and not path.name.startswith("."):
             place = str(pathlib.Path(out) / path.relative_to(folder).with_suffix(f".{ending}"))
             if place in taken:
-                raise ValueError(f"{taken[place]} and {path} would both become {place}; put them into folders of their own")
+                raise ValueError(
+                    f"{taken[place]} and {path} would both become {place}; put them into folders of their own"
+                )
             taken[place] = path
             yield {"src": str(path), "dst": place}
 

@@ -78,7 +78,9 @@ def by_ray(folder, out, workers, kill):
     ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, logging_level="error")
     try:
         warm(lambda: ray_folder.develop_folder(folder / "warm", out.parent / "warm", **SETTINGS))
-        return timed(lambda: ray_folder.develop_folder(folder / "in", out, **SETTINGS), out, kill, lambda: named("ray::"))
+        return timed(
+            lambda: ray_folder.develop_folder(folder / "in", out, **SETTINGS), out, kill, lambda: named("ray::")
+        )
     finally:
         ray.shutdown()
 
@@ -91,7 +93,9 @@ def by_dask(folder, out, workers, kill):
     with Client(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None) as client:
         pids = list(client.run(os.getpid).values())
         warm(lambda: dask_folder.develop_folder(client, folder / "warm", out.parent / "warm", **SETTINGS))
-        return timed(lambda: dask_folder.develop_folder(client, folder / "in", out, **SETTINGS), out, kill, lambda: pids[0])
+        return timed(
+            lambda: dask_folder.develop_folder(client, folder / "in", out, **SETTINGS), out, kill, lambda: pids[0]
+        )
 
 
 def warm(work):
@@ -121,6 +125,8 @@ def main():
     said = parser.parse_args()
     engines = {"ray": by_ray, "dask": by_dask}
     os.environ["PYTHONPATH"] = str(pathlib.Path(__file__).parent)
+    # A machine that is busy with the work itself is no dead one.
+    os.environ.update(RAY_health_check_timeout_ms="60000", RAY_health_check_failure_threshold="20")
     with tempfile.TemporaryDirectory() as place:
         folder = pathlib.Path(place)
         make(said.make_raw, folder / "in", said.files)

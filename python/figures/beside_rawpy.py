@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 #: Pairs of runs.
-RUNS = 7
+RUNS = 5
 
 OPEN_TO_LINEAR = {
     "darkroot": "import darkroot; work = lambda: darkroot.develop(path, look='linear', dtype='uint16')",
@@ -73,7 +73,9 @@ print(f"{before:.1f} MiB after 100 opens, {resident():.1f} MiB after 1,000 more"
 
 def python(code, *arguments):
     """What a process of its own prints."""
-    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, check=True
+    ).stdout
 
 
 def main():

@@ -106,7 +106,10 @@ def main():
             truth = darkroot.measure_chart(folder / "sg140/chart.dng", "sg140", sg, accept=True).xyz
             for name, xyz in ways(folder):
                 e = errors(xyz, truth)
-                print(f"| {camera} | {name} | {e.mean():.2f} | {numpy.percentile(e, 95):.2f} | {e.max():.2f} |", flush=True)
+                print(
+                    f"| {camera} | {name} | {e.mean():.2f} | {numpy.percentile(e, 95):.2f} | {e.max():.2f} |",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ def test_imageio_reads_raw_files(nef):
     import imageio.v2
 
     assert numpy.array_equal(imageio.v2.imread(nef), expected)
-    with pytest.raises(Exception):
+    with pytest.raises(OSError):
         iio.imread(b"nothing", extension=".nef")
 
 
@@ -72,9 +72,7 @@ def test_notebooks_show_things(nef):
     shown = re.search(r"base64,([^\"]+)", photo._repr_html_())[1]
     assert image.open(io.BytesIO(base64.b64decode(shown))).size[0] <= 480
     assert "<h4>D65</h4>" in darkroot.Profile.load("Nikon D700")._repr_html_()
-    assert "<script" not in darkroot.fit_profile(
-        *_colours(), camera="<script>alert(1)</script> x"
-    )._repr_html_()
+    assert "<script" not in darkroot.fit_profile(*_colours(), camera="<script>alert(1)</script> x")._repr_html_()
 
 
 def _colours():

@@ -7,10 +7,10 @@ import sys
 import threading
 import time
 
+import conftest
 import numpy
 import pytest
 
-import conftest
 import darkroot
 
 EXAMPLES = conftest.ROOT / "python/examples"
@@ -86,11 +86,14 @@ def test_a_folder_is_one_lazy_array(folder, nef):
     assert lazy[:3].mean(axis=(1, 2)).compute() == pytest.approx(numpy.stack([expected.mean(axis=(0, 1))] * 3))
 
 
-def test_ray_develops_a_folder_though_a_worker_dies(folder, tmp_path):
+def test_ray_develops_a_folder_though_a_worker_dies(folder, tmp_path, monkeypatch):
     ray = pytest.importorskip("ray")
     import measure
     import ray_folder
 
+    # A machine that is busy with the work itself is no dead one.
+    monkeypatch.setenv("RAY_health_check_timeout_ms", "60000")
+    monkeypatch.setenv("RAY_health_check_failure_threshold", "20")
     ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, logging_level="error")
     try:
         assert ray.get(ray.remote(darkroot._threads.usual).remote()) == 1

@@ -1,8 +1,7 @@
 """The notebooks run from the first cell to the last."""
 
-import pytest
-
 import conftest
+import pytest
 
 nbclient = pytest.importorskip("nbclient")
 nbformat = pytest.importorskip("nbformat")

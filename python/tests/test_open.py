@@ -2,7 +2,9 @@
 
 import gc
 import io
+import os
 import pathlib
+import pickle
 
 import numpy
 import pytest
@@ -52,8 +54,20 @@ def test_a_closed_photo_says_so(nef):
         photo.develop()
 
 
-def test_the_preview_is_the_jpeg_that_the_camera_embedded(raw, nef):
-    assert darkroot.open(nef).preview() is None or darkroot.open(nef).preview().startswith(b"\xff\xd8")
+def test_the_preview_is_the_jpeg_that_the_camera_embedded(nef):
+    assert darkroot.open(nef).preview() is None
+    folder = os.environ.get("DARKROOT_DATA")
+    if not folder:
+        pytest.skip("DARKROOT_DATA names no folder of test files, and the samples have no preview")
+    path = pathlib.Path(folder, "raw/canon_30d.cr2")
+    for source in (path, path.read_bytes()):
+        jpeg = darkroot.open(source).preview()
+        assert jpeg.startswith(b"\xff\xd8") and jpeg in path.read_bytes()
+
+
+def test_a_photo_stays_in_its_process(nef):
+    with pytest.raises(TypeError, match="send its path or its bytes"):
+        pickle.dumps(darkroot.open(nef))
 
 
 def test_light_is_the_mosaic_less_black_over_white(dng):

@@ -125,7 +125,10 @@ def test_ctrl_c_ends_a_long_call_within_a_second(nef, raw, tmp_path, call):
     path = raw("--format", "nef", "--width", "3000", "--height", "2000", name="large.nef")
     code = textwrap.dedent(LONG).format(call=call)
     process = subprocess.Popen(
-        [sys.executable, "-c", code, path, tmp_path / "a.jpg"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", code, path, tmp_path / "a.jpg"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert process.stdout.readline() == "begun\n"
     time.sleep(0.7)

@@ -38,7 +38,9 @@ def test_the_program_reads_it_as_it_is_meant(nef, tmp_path):
     darkroot.develop_file(nef, tmp_path / "ours.jpg", recipe=recipe)
     darkroot.develop_file(nef, tmp_path / "file.jpg", recipe=tmp_path / "r.toml")
     darkroot.develop_file(nef, tmp_path / "dict.jpg", recipe=dict(recipe))
-    subprocess.run([program, "-q", "develop", nef, "-o", tmp_path / "program.jpg", "--recipe", tmp_path / "r.toml"], check=True)
+    subprocess.run(
+        [program, "-q", "develop", nef, "-o", tmp_path / "program.jpg", "--recipe", tmp_path / "r.toml"], check=True
+    )
     pictures = {path.read_bytes() for path in tmp_path.glob("*.jpg")}
     assert len(pictures) == 1
 

@@ -6,6 +6,7 @@ import inspect
 import pathlib
 
 import conftest
+
 import darkroot
 
 STUBS = conftest.ROOT / "python/darkroot"

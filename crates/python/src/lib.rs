@@ -1,11 +1,11 @@
 //! The Python package `darkroot`: what Python says becomes calls of the library, and what comes back becomes arrays.
 //!
 //! Users see the package `python/darkroot`, which takes most of this as it is. Each file here is one noun of it. Work runs in
-//! [`run`], without Python's lock and with an ear for Ctrl-C; what Python names as settings becomes texts of the table of
-//! settings in [`settings`]; errors of the library become exceptions in [`fault`].
+//! `run.rs`, without Python's lock and with an ear for Ctrl-C; what Python names as settings becomes texts of the table of
+//! settings in `settings.rs`; errors of the library become exceptions in `fault.rs`.
 //!
 //! **What it does not do:** it develops nothing itself, opens no files but through the library, and has no unsafe code:
-//! arrays that share memory with a photograph go by NumPy's array interface ([`samples`]).
+//! arrays that share memory with a photograph go by NumPy's array interface (`samples.rs`).
 
 mod batch;
 mod cancel;
