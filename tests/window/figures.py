@@ -65,7 +65,7 @@ def main():
             with bench.window(folder, home) as window:
                 page = browser.new_page(viewport=SIZE)
                 page.goto(window.base + "#sheet")
-                page.wait_for_selector(".cell")
+                page.wait_for_selector(".thumb.there", timeout=60_000)
                 start = time.perf_counter()
                 page.evaluate("location.hash = 'develop=0/a.nef'")
                 shown(page)

@@ -140,6 +140,8 @@ function follow(id) {
   stream.onmessage = (event) => {
     const told = JSON.parse(event.data);
     detail(told);
+    const line = parts.list.querySelector(".on span");
+    if (line) line.textContent = summary(told);
     const ends = told.phase === "done" || told.phase === "failed" || told.phase === "paused";
     if (ends && !ended) {
       list().catch(() => {});

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use darkroot::ProfileStore;
+use darkroot::{ProfileStore, path_text};
 use darkroot::recipe::Layers;
 use darkroot_batch::{
     Batch, ChartShot, CrewOptions, Event, PlanOptions, Search, Session, SettingsByFile, State, Stop, Summary,
@@ -240,7 +240,7 @@ impl Running {
     fn hear(&self, event: &Event<'_>) {
         let mut progress = locked(&self.progress);
         let Progress { told, states, .. } = &mut *progress;
-        let shown = |item: &darkroot_batch::Item| darkroot::shown(&item.source.path);
+        let shown = |item: &darkroot_batch::Item| darkroot::shown(&path_text::path(&item.source.key));
         match event {
             Event::Begun(item) => told.at_work.push(shown(item)),
             Event::Later(item) | Event::Gone(item) => told.at_work.retain(|name| *name != shown(item)),

@@ -82,14 +82,19 @@ pub(crate) async fn render(
         let view = view(&plan, &wanted)?;
         let Ok(picture) = plan.render(view, cancel) else { return Err(replaced()) };
         let picture = screen::for_screen(picture, wanted.gamut);
-        let (bytes, kind) = screen::bytes(&picture, wanted.format, wanted.quick)
-            .map_err(|e| Fault::unusable(e.to_string()))?;
+        // One thread counts while another codes.
+        let (counted, coded) = std::thread::scope(|scope| {
+            let counted = scope.spawn(|| if wanted.rect.is_none() { tally(&picture) } else { None });
+            let coded = screen::bytes(&picture, wanted.format, wanted.quick);
+            (counted.join().ok().flatten(), coded)
+        });
+        let (bytes, kind) = coded.map_err(|e| Fault::unusable(e.to_string()))?;
         let about = About {
             size: [plan.size().width, plan.size().height],
             bin: view.scale.bin(),
             kelvin: plan.white.map(|white| white.kelvin),
             tint: plan.white.map(|white| white.tint()),
-            tally: if wanted.rect.is_none() { tally(&picture) } else { None },
+            tally: counted,
             notes: open
                 .photo
                 .capture()
