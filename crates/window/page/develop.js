@@ -240,12 +240,16 @@ function pick(yes) {
   parts.pick.classList.toggle("on", yes);
 }
 
-function pressed(event) {
+async function pressed(event) {
   const place = picture.at(event);
   if (tool !== "pick" || !place) return;
   const [x, y] = place.map(Math.floor);
-  set("white-balance", `spot:${x},${y}`);
   pick(false);
+  try {
+    set("white-balance", await post("balance", { file: draft.file, edits: draft.edits, x, y }));
+  } catch (error) {
+    fault(error);
+  }
 }
 
 async function crop() {

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use darkroot::{ProfileStore, path_text};
 use darkroot::recipe::Layers;
+use darkroot::{ProfileStore, path_text};
 use darkroot_batch::{
     Batch, ChartShot, CrewOptions, Event, PlanOptions, Search, Session, SettingsByFile, State, Stop, Summary,
     Wording, find,

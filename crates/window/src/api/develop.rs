@@ -9,7 +9,7 @@ use axum::http::HeaderValue;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use darkroot::{Plan, Scale, Settings, View};
-use darkroot_develop::{Crop, Resize};
+use darkroot_develop::{Balance, Crop, Resize};
 use darkroot_photo::{Rect, Size};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -221,6 +221,25 @@ pub(crate) struct SpotAt {
     y: usize,
     #[serde(default)]
     gamut: Gamut,
+}
+
+/// Side of a grey spot that a person points at, pixels.
+const GREY: usize = 32;
+
+/// The white balance that makes a spot grey, as a text of `white-balance`: multipliers, which stay what they are when the picture
+/// is cropped or turned.
+pub(crate) async fn balance(
+    State(shared): State<Arc<Shared>>,
+    Body(at): Body<SpotAt>,
+) -> Result<Json<String>, Fault> {
+    aside(move || {
+        let (open, settings) = opened(&shared, &at.edited)?;
+        let mut settings = screen::shown(settings, at.gamut);
+        settings.recipe.balance = Balance::Spot { x: at.x, y: at.y, side: GREY };
+        let [red, green, blue] = plan(&shared, &open, &settings)?.multipliers;
+        Ok(Json(format!("{:.4},1,{:.4}", red / green, blue / green)))
+    })
+    .await
 }
 
 /// What a spot of the picture is.

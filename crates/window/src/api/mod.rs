@@ -42,6 +42,7 @@ pub(crate) fn router(shared: Arc<Shared>, gate: Arc<Guard>) -> Router {
         .route("/render", post(develop::render))
         .route("/frame", post(develop::frame))
         .route("/spot", post(develop::spot))
+        .route("/balance", post(develop::balance))
         .route("/export", post(export::export))
         .route("/batch", get(batch::list).post(batch::start))
         .route("/states", get(batch::states))
