@@ -16,6 +16,7 @@ mod help;
 mod hostile;
 mod inspect;
 mod metadata;
+mod open;
 mod outputs;
 mod paths;
 mod profile_commands;
