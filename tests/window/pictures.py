@@ -50,6 +50,7 @@ def main():
                 page.wait_for_timeout(3000)
                 page.mouse.move(700, 500)
                 page.wait_for_timeout(1500)
+                page.evaluate("document.querySelector('#develop .side').scrollTo(0, 0)")
                 keep("window-develop", page.screenshot())
                 page.goto(window.base + f"#chart=0/{first}")
                 page.wait_for_selector("#chart .patch", timeout=120_000)

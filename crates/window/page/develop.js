@@ -105,6 +105,8 @@ export async function show(file) {
   exports.close();
   picture.reset();
   histogram.show(null);
+  parts.light.textContent = parts.facts.textContent = "";
+  fill(parts.notes);
   files.current = file;
   parts.name.textContent = baseName(file);
   parts.name.title = shown(file.slice(file.indexOf("/") + 1));

@@ -60,6 +60,7 @@ export class Picture extends EventTarget {
 
   /** Renders anew; quickly, if more is to follow at once. */
   async update(quick = false) {
+    this.element.classList.add("busy");
     try {
       await this.main.whole(this.#longest() * (quick ? QUICK : 1), quick && this.mayBeNoisy);
       if (!this.main.about) return;
@@ -67,6 +68,8 @@ export class Picture extends EventTarget {
       this.#settle();
     } catch (error) {
       if (error.name !== "AbortError" && error.status !== 409) this.dispatchEvent(new CustomEvent("fault", { detail: error }));
+    } finally {
+      this.element.classList.remove("busy");
     }
   }
 

@@ -1,6 +1,6 @@
 //! `darkroot open`, as a script uses it; `tests/window` has it in a browser.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Child, Stdio};
 
