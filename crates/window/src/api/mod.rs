@@ -49,6 +49,7 @@ pub(crate) fn router(shared: Arc<Shared>, gate: Arc<Guard>) -> Router {
         .route("/batch/watch", post(batch::watch))
         .route("/batch/{id}", get(batch::one))
         .route("/batch/{id}/events", get(batch::events))
+        .route("/batch/{id}/sheet", get(batch::sheet))
         .route("/batch/{id}/pause", post(batch::pause))
         .route("/batch/{id}/resume", post(batch::resume))
         .route("/charts", get(chart::offers))
