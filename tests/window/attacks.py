@@ -99,7 +99,7 @@ def test_paths_lead_nowhere_else(bench):
             for path, body in [
                 ("render", {"file": name, "place": "x"}),
                 ("export", {"file": name}),
-                ("export", {"file": "0/a.nef", "folder": "0/.." if name in ("", "0/") else name}),
+                ("export", {"file": "0/a.nef", "folder": "0/.." if name in ("", "0/", "0/\0") else name}),
                 ("chart/find", {"file": name}),
                 ("batch/watch", {"out": name or "0/.."}),
             ]:

@@ -9,12 +9,17 @@ def test_batch_to_its_end_with_a_failure(bench):
         with bench.window(folder, home) as window, bench.page(window, "#batch") as page:
             page.wait_for_selector("#batch button:text-is('Start')")
             assert not (folder / "pictures").exists()
+            page.check("#batch .field:has-text('contact sheet') input")
             page.click("#batch button:text-is('Start')")
             page.wait_for_selector("#batch .state[data-phase=done]", timeout=120_000)
             page.wait_for_selector("#batch .failures li:has-text('broken.nef')")
             assert sorted(str(p.relative_to(folder / "pictures")) for p in folder.glob("pictures/**/*.jpg")) == [
                 "c.jpg", "roll/a.jpg", "roll/b.jpg"
             ]
+            page.wait_for_selector("#batch a:has-text('Contact sheet')")
+            status, headers, content = window.ask("GET", "api/v1/batch/1/sheet")
+            assert status == 200 and b"broken.nef" in content and "sandbox" in headers["content-security-policy"]
+            assert content == (folder / "pictures/sheet.html").read_bytes()
             page.click("nav >> text=Photographs")
             page.wait_for_selector(".cell:has-text('c.nef') .badge:has-text('developed')")
             page.wait_for_selector(".cell:has-text('broken.nef') .badge:has-text('cannot be read')")

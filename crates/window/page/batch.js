@@ -21,6 +21,7 @@ export function build(element, routes) {
   parts.chart = h("select", {}, [["", "As the settings say"], ["auto", "From a shot of a chart in each folder"]].map(([value, text]) => h("option", { value }, text)));
   parts.redo = h("input", { type: "checkbox", class: "switch" });
   parts.over = h("input", { type: "checkbox", class: "switch" });
+  parts.sheet = h("input", { type: "checkbox", class: "switch" });
   parts.profile = h("p", { class: "told", hidden: true });
   parts.watch = h("div", { class: "journals" });
   parts.list = h("ul", { class: "batches" });
@@ -36,6 +37,7 @@ export function build(element, routes) {
         parts.profile,
         field("Everything again, also what is done", parts.redo),
         field("Replace pictures that are not from a batch", parts.over),
+        field("Write a contact sheet", parts.sheet, "sheet.html beside the pictures"),
         notice.element,
         h("div", { class: "buttons" }, h("button", { class: "first", onclick: start }, "Start")),
         h("h2", {}, "Watch a batch"),
@@ -112,7 +114,7 @@ async function start() {
   try {
     const begun = await post("batch", {
       inputs: inputs(), out: parts.root.value + out, settings: more, redo: parts.redo.checked, overwrite: parts.over.checked,
-      chart_shot: parts.chart.value || null,
+      chart_shot: parts.chart.value || null, sheet: parts.sheet.checked,
     });
     follow(begun.id);
     await list();
@@ -140,6 +142,8 @@ function follow(id) {
   stream.onmessage = (event) => {
     const told = JSON.parse(event.data);
     detail(told);
+    const line = parts.list.querySelector(".on span");
+    if (line) line.textContent = summary(told);
     const ends = told.phase === "done" || told.phase === "failed" || told.phase === "paused";
     if (ends && !ended) {
       list().catch(() => {});
@@ -185,6 +189,7 @@ function detail(one) {
       h("h2", { title: one.out }, h("bdi", {}, one.out)),
       h("span", { class: "state", "data-phase": one.phase }, PHASES[one.phase]),
       h("span", { class: "space" }),
+      one.sheet && h("a", { class: "button", href: address(`batch/${one.id}/sheet`), target: "_blank", rel: "noreferrer" }, "Contact sheet"),
       mine && (one.phase === "running" || one.phase === "planning") && h("button", { onclick: () => act("pause") }, "Pause"),
       mine && (one.phase === "paused" || one.phase === "failed" || one.phase === "done") && h("button", { onclick: () => act("resume").then(() => follow(one.id)) }, one.phase === "paused" ? "Go on" : "Look for what is left")),
     h("progress", { max: 1, "aria-label": "Progress", value: share ?? (one.phase === "running" ? undefined : 1), class: share === null ? "open" : "" }),

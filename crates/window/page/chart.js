@@ -263,6 +263,7 @@ function shows(made) {
     h("button", { onclick: () => report(made.id) }, "Show the report"),
     field("Name", name, "In your folder of profiles"),
     h("div", { class: "buttons" }, over, h("button", { class: "first", onclick: () => save(made, name, over, false) }, "Save profile")));
+  parts.made.scrollIntoView({ block: "nearest" });
   report(made.id);
 }
 

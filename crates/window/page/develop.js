@@ -1,16 +1,17 @@
 // Developing one photograph: the picture, the controls, and what the picture tells.
 
-import { GAMUT, address, get, post } from "./server.js";
-import { baseName, fill, h, isTyping, later, newestOnly, Notice, shown } from "./elements.js";
+import { address, post } from "./server.js";
+import { baseName, fill, h, isTyping, newestOnly, Notice, shown } from "./elements.js";
 import { Controls } from "./controls.js";
 import { CropTool } from "./crop.js";
 import { ExportPanel } from "./export.js";
 import { Histogram } from "./histogram.js";
 import { Picture } from "./picture.js";
+import { Readout } from "./readout.js";
 import { clipboard, draft as draftOf, hasDraft } from "./edits.js";
 import { files } from "./files.js";
 
-let root, go, picture, controls, histogram, exports, table;
+let root, go, picture, controls, histogram, readout, exports, table;
 let draft = null;
 let tool = null;
 let about = null;
@@ -34,6 +35,7 @@ export async function build(element, routes, described) {
   table = described;
   picture = new Picture(asked, askedBefore);
   histogram = new Histogram();
+  readout = new Readout(picture, () => (draft && !(tool instanceof CropTool) ? { file: draft.file, edits: draft.edits } : null));
   exports = new ExportPanel(() => draft);
   parts.pick = h("button", { title: "Choose a grey spot on the picture (W)", onclick: () => pick(true) }, "Pick grey");
   parts.light = h("span", { class: "told" });
@@ -45,18 +47,16 @@ export async function build(element, routes, described) {
       crop: h("div", { class: "extra" }, parts.crop),
     },
   });
-  build2();
+  layOut();
   picture.addEventListener("rendered", ({ detail }) => told(detail));
   picture.addEventListener("fault", ({ detail }) => fault(detail));
   picture.addEventListener("view", () => { parts.zoom.textContent = picture.isFitted ? "Fit" : `${Math.round(picture.zoom * devicePixelRatio * 100)} %`; });
   picture.addEventListener("press", ({ detail }) => pressed(detail));
-  picture.element.addEventListener("pointermove", hover);
-  picture.element.addEventListener("pointerleave", () => readout(null));
   document.addEventListener("keydown", key);
   document.addEventListener("keyup", (event) => { if (event.key === "b") picture.hold(false); });
 }
 
-function build2() {
+function layOut() {
   const button = (text, title, act, more = {}) => h("button", { title, onclick: act, ...more }, text);
   parts.save = button("Save", "Write the edits into the sidecar (Ctrl+S)", () => save(false), { class: "first" });
   parts.over = button("Save over it", "Save these edits in place of what somebody else wrote", () => save(true), { hidden: true });
@@ -67,7 +67,6 @@ function build2() {
   parts.facts = h("span", { class: "file-facts" });
   parts.zoom = button("Fit", "Fit (F), or pixel for pixel (Z)", () => (picture.isFitted ? picture.full() : picture.fit()), { class: "zoom" });
   parts.split = button("Before | after", "Before at the left, after at the right (Y); hold B to see before alone", split, { "aria-pressed": "false" });
-  parts.spot = h("dl", { class: "spot", "aria-label": "Spot" });
   parts.strip = h("div", { class: "strip", "aria-label": "Photographs", role: "group" });
   parts.tool = h("div", { class: "tool-place" });
   parts.notes = h("ul", { class: "notes" });
@@ -81,14 +80,13 @@ function build2() {
         parts.strip),
       h("aside", { class: "side", "aria-label": "Settings" },
         histogram.element,
-        parts.spot,
+        readout.element,
         h("div", { class: "buttons" }, parts.undo, parts.redo,
           button("Copy", "Copy the edits, but for the geometry, to paste them onto others in the contact sheet", copy),
           button("Reset", "Take all edits away", resetAll), h("span", { class: "space" }), parts.over, parts.load, parts.save),
         saved.element,
         controls.element,
         parts.notes)));
-  readout(null);
 }
 
 /** Shows a file. */
@@ -107,6 +105,8 @@ export async function show(file) {
   exports.close();
   picture.reset();
   histogram.show(null);
+  parts.light.textContent = parts.facts.textContent = "";
+  fill(parts.notes);
   files.current = file;
   parts.name.textContent = baseName(file);
   parts.name.title = shown(file.slice(file.indexOf("/") + 1));
@@ -240,12 +240,16 @@ function pick(yes) {
   parts.pick.classList.toggle("on", yes);
 }
 
-function pressed(event) {
+async function pressed(event) {
   const place = picture.at(event);
   if (tool !== "pick" || !place) return;
   const [x, y] = place.map(Math.floor);
-  set("white-balance", `spot:${x},${y}`);
   pick(false);
+  try {
+    set("white-balance", await post("balance", { file: draft.file, edits: draft.edits, x, y }));
+  } catch (error) {
+    fault(error);
+  }
 }
 
 async function crop() {
@@ -279,35 +283,6 @@ function endTool() {
     picture.element.classList.remove("picking");
     parts.pick.classList.remove("on");
   }
-}
-
-const measure = newestOnly(async (place) => {
-  try {
-    const [x, y] = place.map(Math.floor);
-    readout(await post("spot", { file: draft.file, edits: draft.edits, x, y, gamut: GAMUT }), [x, y]);
-  } catch {
-    readout(null);
-  }
-});
-const soon = later(60, (event) => {
-  const place = draft && !tool?.begin && picture.at(event);
-  if (place) measure(place);
-});
-
-function hover(event) {
-  if (event.buttons === 0) soon(event);
-}
-
-function readout(spot, place) {
-  const numbers = (values, digits) => values.map((v) => v.toFixed(digits)).join("  ");
-  const rows = [
-    ["Camera RGB", spot && numbers(spot.camera, 4)],
-    ["XYZ (D50)", spot && numbers(spot.xyz, 4)],
-    ["Lab (D50)", spot && numbers(spot.lab, 1)],
-    ["Output", spot && numbers(spot.output, 0)],
-    ["Place", spot && place.join(", ")],
-  ];
-  fill(parts.spot, rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value ?? "–")]));
 }
 
 function next(by) {

@@ -19,7 +19,10 @@ export class Histogram {
     const context = this.canvas.getContext("2d");
     const { width, height } = this.canvas;
     context.clearRect(0, 0, width, height);
-    if (!tally) return;
+    if (!tally) {
+      this.black.textContent = this.white.textContent = "";
+      return;
+    }
     context.globalCompositeOperation = "lighter";
     tally.bins.forEach((bins, c) => {
       context.beginPath();

@@ -44,6 +44,7 @@ export function build(element, routes) {
       select("Rating", "stars", [[0, "Any rating"], ...[1, 2, 3, 4, 5].map((n) => [n, "★".repeat(n) + (n < 5 ? " or more" : "")])]),
       select("State", "state", [["", "Any state"], ["edited", "Edited"], ["unedited", "Not edited"], ["done", "Developed by a batch"], ["failed", "Failed in a batch"], ["fault", "Cannot be read"]]),
       count,
+      h("button", { class: "quiet", title: "Read the folders again", "aria-label": "Read the folders again", onclick: load }, "⟳"),
       h("span", { class: "space" }),
       actions,
       h("input", { type: "range", min: 130, max: 360, value: width, class: "short", title: "Size of the pictures", "aria-label": "Size of the pictures", oninput: (e) => { width = Number(e.target.value); layOut(); } }),

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use darkroot::ProfileStore;
 use darkroot::recipe::Layers;
+use darkroot::{ProfileStore, path_text};
 use darkroot_batch::{
-    Batch, ChartShot, CrewOptions, Event, PlanOptions, Search, Session, SettingsByFile, State, Stop, Summary,
-    Wording, find,
+    Batch, ChartShot, CrewOptions, Event, PlanOptions, Search, Session, SettingsByFile, Sheet, State, Stop,
+    Summary, Wording, find,
 };
 use serde::Serialize;
 
@@ -22,6 +22,8 @@ pub(crate) struct Request {
     pub(crate) options: PlanOptions,
     pub(crate) layers: Layers,
     pub(crate) chart: Option<ChartShot>,
+    /// Where a contact sheet is written, if one is wanted.
+    pub(crate) sheet: Option<PathBuf>,
 }
 
 /// Where a batch is.
@@ -201,12 +203,14 @@ impl Running {
     fn run(&self) -> Result<Summary, String> {
         let words = |error: &(dyn std::error::Error + 'static)| self.wording.of(error);
         let stop = locked(&self.progress).stop.clone();
-        let Request { search, options, layers, chart } = &self.request;
+        let Request { search, options, layers, chart, sheet } = &self.request;
         let mut settings = SettingsByFile::new(layers.clone());
         let sources = find(search, &options.out).map_err(|e| words(&e))?;
         darkroot_batch::check(&sources, options, &mut settings).map_err(|e| words(&e))?;
         let store = ProfileStore::clone(&self.store);
-        let mut batch = Batch::open(options, self.crew.clone(), store).map_err(|e| words(&e))?;
+        let mut sheet = Sheet::new(sheet.as_slice()).map_err(|e| words(&e))?;
+        let batch = Batch::open(options, self.crew.clone(), store).map_err(|e| words(&e))?;
+        let mut batch = batch.with_thumbnails(sheet.wants_thumbnails());
         let session = match chart {
             Some(chart) => {
                 let mut say = |note: &str| self.note(note);
@@ -228,7 +232,19 @@ impl Running {
                 progress.told.phase = Phase::Running;
             }
         }
-        batch.run(&plan, &stop, &mut |event| self.hear(&event)).map_err(|e| words(&e))
+        let mut on_event = |event: Event<'_>| {
+            sheet.record(&event);
+            self.hear(&event);
+        };
+        let summary = batch.run(&plan, &stop, &mut on_event).map_err(|e| words(&e))?;
+        if sheet.wants_thumbnails() && !summary.interrupted {
+            let mut take = |item: &darkroot_batch::Item, picture: &str| sheet.picture(item, picture);
+            batch.thumbnails_of_done(&plan, &stop, &mut take).map_err(|e| words(&e))?;
+        }
+        if !plan.items.is_empty() {
+            sheet.write(&plan, &summary).map_err(|e| words(&e))?;
+        }
+        Ok(summary)
     }
 
     fn note(&self, words: &str) {
@@ -240,7 +256,7 @@ impl Running {
     fn hear(&self, event: &Event<'_>) {
         let mut progress = locked(&self.progress);
         let Progress { told, states, .. } = &mut *progress;
-        let shown = |item: &darkroot_batch::Item| darkroot::shown(&item.source.path);
+        let shown = |item: &darkroot_batch::Item| darkroot::shown(&path_text::path(&item.source.key));
         match event {
             Event::Begun(item) => told.at_work.push(shown(item)),
             Event::Later(item) | Event::Gone(item) => told.at_work.retain(|name| *name != shown(item)),

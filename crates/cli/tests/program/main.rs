@@ -19,6 +19,7 @@ mod inspect;
 mod looks;
 mod luts;
 mod metadata;
+mod open;
 mod outputs;
 mod paths;
 mod profile_commands;

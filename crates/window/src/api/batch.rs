@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use axum::Json;
 use axum::extract::{Path, State};
+use axum::http::header::{CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::response::IntoResponse;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use darkroot::path_text;
@@ -21,6 +22,7 @@ use tokio_stream::wrappers::ReceiverStream;
 use super::aside;
 use super::asked::{Body, Edits};
 use crate::fault::Fault;
+use crate::guard::REPORT_POLICY;
 use crate::running::{Request, Running};
 use crate::state::{Shared, locked};
 use crate::watched::Watched;
@@ -81,6 +83,7 @@ impl Batches {
 fn told(id: u64, batch: &Known) -> Value {
     let mut told = batch.told();
     told["id"] = id.into();
+    told["sheet"] = batch.out().join(SHEET).is_file().into();
     told["out"] = darkroot::shown(batch.out()).into();
     told
 }
@@ -103,7 +106,13 @@ pub(crate) struct Start {
     overwrite: bool,
     /// Shot of a chart that gives white balance and profile; `auto` looks for one in each folder.
     chart_shot: Option<String>,
+    /// Whether a contact sheet is written beside the pictures, `sheet.html`.
+    #[serde(default)]
+    sheet: bool,
 }
+
+/// Name of the contact sheet.
+const SHEET: &str = "sheet.html";
 
 /// Begins a batch.
 pub(crate) async fn start(
@@ -148,6 +157,7 @@ fn request(shared: &Shared, start: Start) -> Result<Request, Fault> {
         options,
         layers: Layers::new(None, flags, true).map_err(|e| Fault::asked(e.to_string()))?,
         chart,
+        sheet: start.sheet.then(|| out.path.join(SHEET)),
     })
 }
 
@@ -198,6 +208,21 @@ pub(crate) async fn one(
     Path(id): Path<u64>,
 ) -> Result<Json<Value>, Fault> {
     aside(move || Ok(Json(told(id, &shared.batches.get(id)?)))).await
+}
+
+/// The contact sheet of a batch, a page of its own.
+pub(crate) async fn sheet(
+    State(shared): State<Arc<Shared>>,
+    Path(id): Path<u64>,
+) -> Result<impl IntoResponse, Fault> {
+    aside(move || {
+        let out = shared.batches.get(id)?.out().join(SHEET);
+        let name = shared.roots.name(&out).ok_or_else(|| Fault::missing("there is no contact sheet"))?;
+        let place = shared.roots.file(&name)?;
+        let page = place.read().map_err(|e| Fault::missing(e.to_string()))?;
+        Ok(([(CONTENT_TYPE, "text/html; charset=utf-8"), (CONTENT_SECURITY_POLICY, REPORT_POLICY)], page))
+    })
+    .await
 }
 
 /// How often a batch tells what changed.

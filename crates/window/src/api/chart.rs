@@ -20,6 +20,7 @@ use serde_json::{Value, json};
 use super::aside;
 use super::asked::Body;
 use crate::fault::Fault;
+use crate::guard::REPORT_POLICY;
 use crate::state::{Shared, locked};
 
 /// The shot that was looked at last, and the profiles that were made.
@@ -276,10 +277,6 @@ fn fitted(light: &darkroot::make_profile::MadeLight) -> Value {
         "notes": light.calibrated.notes,
     })
 }
-
-/// A report may bring its own style and pictures, and run nothing.
-const REPORT_POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox; frame-ancestors 'self'";
 
 /// The report of a profile that was made, a page of its own.
 pub(crate) async fn report(

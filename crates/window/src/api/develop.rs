@@ -9,7 +9,7 @@ use axum::http::HeaderValue;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use darkroot::{Plan, Scale, Settings, View};
-use darkroot_develop::{Crop, Resize};
+use darkroot_develop::{Balance, Crop, Resize};
 use darkroot_photo::{Rect, Size};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -82,14 +82,19 @@ pub(crate) async fn render(
         let view = view(&plan, &wanted)?;
         let Ok(picture) = plan.render(view, cancel) else { return Err(replaced()) };
         let picture = screen::for_screen(picture, wanted.gamut);
-        let (bytes, kind) = screen::bytes(&picture, wanted.format, wanted.quick)
-            .map_err(|e| Fault::unusable(e.to_string()))?;
+        // One thread counts while another codes.
+        let (counted, coded) = std::thread::scope(|scope| {
+            let counted = scope.spawn(|| if wanted.rect.is_none() { tally(&picture) } else { None });
+            let coded = screen::bytes(&picture, wanted.format, wanted.quick);
+            (counted.join().ok().flatten(), coded)
+        });
+        let (bytes, kind) = coded.map_err(|e| Fault::unusable(e.to_string()))?;
         let about = About {
             size: [plan.size().width, plan.size().height],
             bin: view.scale.bin(),
             kelvin: plan.white.map(|white| white.kelvin),
             tint: plan.white.map(|white| white.tint()),
-            tally: if wanted.rect.is_none() { tally(&picture) } else { None },
+            tally: counted,
             notes: open
                 .photo
                 .capture()
@@ -216,6 +221,25 @@ pub(crate) struct SpotAt {
     y: usize,
     #[serde(default)]
     gamut: Gamut,
+}
+
+/// Side of a grey spot that a person points at, pixels.
+const GREY: usize = 32;
+
+/// The white balance that makes a spot grey, as a text of `white-balance`: multipliers, which stay what they are when the picture
+/// is cropped or turned.
+pub(crate) async fn balance(
+    State(shared): State<Arc<Shared>>,
+    Body(at): Body<SpotAt>,
+) -> Result<Json<String>, Fault> {
+    aside(move || {
+        let (open, settings) = opened(&shared, &at.edited)?;
+        let mut settings = screen::shown(settings, at.gamut);
+        settings.recipe.balance = Balance::Spot { x: at.x, y: at.y, side: GREY };
+        let [red, green, blue] = plan(&shared, &open, &settings)?.multipliers;
+        Ok(Json(format!("{:.4},1,{:.4}", red / green, blue / green)))
+    })
+    .await
 }
 
 /// What a spot of the picture is.
