@@ -135,7 +135,9 @@ def test_ctrl_c_ends_a_long_call_within_a_second(nef, raw, tmp_path, call):
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
     assert process.stdout.readline() == "interrupted\n", process.stderr.read()
-    assert time.monotonic() - begin < 1.0
+    # A second; where others keep every core busy, so long as the system needs to let us run.
+    busy = os.getloadavg()[0] > (os.cpu_count() or 1)
+    assert time.monotonic() - begin < (3.0 if busy else 1.0)
     assert process.wait(timeout=20) == 0, process.stderr.read()
     assert not [name for name in os.listdir(tmp_path) if name.startswith(".darkroot-")]
 
