@@ -58,7 +58,7 @@ def kill_one(workers, stop):
 
 
 def named(prefix):
-    """The process of a worker of Ray that is at work, by its title."""
+    """The process of a worker of Ray that is at work, by the beginning of its title."""
     for entry in pathlib.Path("/proc").iterdir():
         if entry.name.isdigit():
             try:
@@ -79,7 +79,7 @@ def by_ray(folder, out, workers, kill):
     try:
         warm(lambda: ray_folder.develop_folder(folder / "warm", out.parent / "warm", **SETTINGS))
         return timed(
-            lambda: ray_folder.develop_folder(folder / "in", out, **SETTINGS), out, kill, lambda: named("ray::")
+            lambda: ray_folder.develop_folder(folder / "in", out, **SETTINGS), out, kill, lambda: named("ray::Map")
         )
     finally:
         ray.shutdown()
@@ -104,7 +104,7 @@ def warm(work):
 
 
 def timed(work, out, kill, victim):
-    """Runs it, while a worker is killed if that is asked for."""
+    """Seconds of a run, and seconds that were spent in developing; a worker is killed meanwhile if that is asked for."""
     stop = threading.Event()
     if kill:
         threading.Thread(target=kill_one(victim, stop), args=(out, kill), daemon=True).start()
@@ -113,7 +113,7 @@ def timed(work, out, kill, victim):
     seconds = time.monotonic() - begin
     stop.set()
     assert not any(row["error"] for row in rows), [row["error"] for row in rows if row["error"]][:3]
-    return seconds
+    return seconds, sum(row["seconds"] for row in rows)
 
 
 def main():
@@ -134,22 +134,31 @@ def main():
         begin = time.monotonic()
         rows = [engine.develop(row, threads=1, **SETTINGS) for row in engine.rows(folder / "in", folder / "alone")]
         alone = time.monotonic() - begin
-        print(f"one process, file after file: {alone:.1f} s, {1000 * alone / len(rows):.1f} ms a file")
+        inside = 1000 * sum(row["seconds"] for row in rows) / len(rows)
+        beside = 1000 * alone / len(rows) - inside
+        print(
+            f"file after file: {alone:.1f} s, {inside:.1f} ms a file in developing, {beside:.1f} ms beside it",
+            flush=True,
+        )
         for jobs in (1, 2):
             summary = darkroot.batch(folder / "in", folder / f"batch{jobs}", jobs=jobs, threads=jobs, **SETTINGS)
             assert (summary.done, summary.failed) == (said.files, 0), summary
             each = 1000 * jobs * summary.seconds / said.files
-            print(f"batch, {jobs} at once: {summary.seconds:.1f} s, {each:.1f} ms a file and worker")
+            print(f"batch, {jobs} at once: {summary.seconds:.1f} s, {each:.1f} ms a file and worker", flush=True)
         expected = outputs(folder / "batch2")
         assert len(expected) == said.files and outputs(folder / "alone") == expected
         for name in said.engines.split(","):
             for workers, kill in [(1, 0), (2, 0), (2, said.files // 5)]:
                 out = folder / f"{name}{workers}{bool(kill)}"
-                seconds = engines[name](folder, out, workers, kill)
+                seconds, inside = engines[name](folder, out, workers, kill)
                 same = outputs(out) == expected
                 words = ", one killed in the middle" if kill else ""
-                each = 1000 * workers * seconds / said.files
-                print(f"{name}, workers: {workers}{words}: {seconds:.1f} s, {each:.1f} ms a file and worker")
+                over = 1000 * (workers * seconds - inside) / said.files
+                print(
+                    f"{name}, workers: {workers}{words}: {seconds:.1f} s, of each worker {1000 * inside / said.files:.1f} ms "
+                    f"a file in developing, {over:.1f} ms beside it",
+                    flush=True,
+                )
                 assert same, "outputs are missing, or are not those of the batch"
 
 

@@ -8,6 +8,8 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
+#: Examples of the repository that were compiled; resolved here, before any test changes its folder.
+EXAMPLES = pathlib.Path(os.environ["DARKROOT_EXAMPLES"]).resolve() if "DARKROOT_EXAMPLES" in os.environ else None
 
 
 @pytest.fixture(scope="session")
@@ -39,11 +41,9 @@ def copies(tmp_path, nef):
 
 def example(name):
     """An example of the repository that was compiled, or a skipped test."""
-    folder = os.environ.get("DARKROOT_EXAMPLES")
-    path = pathlib.Path(folder, name) if folder else None
-    if path is None or not path.exists():
+    if EXAMPLES is None or not (EXAMPLES / name).exists():
         pytest.skip(f"DARKROOT_EXAMPLES names no folder with the compiled example {name}")
-    return path
+    return EXAMPLES / name
 
 
 @pytest.fixture(scope="session")

