@@ -1,5 +1,6 @@
 #!/bin/sh
-# Makes the pictures of the guide from the samples. Run from the top of the repository.
+# Makes the pictures of the guide from the samples. Run from the top of the repository. before.jpg, after.jpg and window-*.jpg are
+# made by tests/window/pictures.py, in a browser.
 set -eu
 darkroot="${1:-target/release/darkroot}"
 develop() { "$darkroot" develop -q --overwrite --quality 80 --chroma 420 "$@"; }

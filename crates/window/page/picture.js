@@ -18,7 +18,6 @@ export class Picture extends EventTarget {
   #fitted = true;
   #at = [0, 0];
   #size = null;
-  #moving = false;
   #split = null;
 
   constructor(asked, askedBefore) {
@@ -28,13 +27,15 @@ export class Picture extends EventTarget {
     this.sheet = h("div", { class: "paper" }, this.main.element, this.before?.element);
     this.handle = h("div", { class: "split-handle", role: "separator", "aria-label": "Before and after", tabindex: "0", hidden: true });
     this.element = h("div", { class: "stage", tabindex: "0", role: "img", "aria-label": "The picture" }, this.sheet, this.handle);
-    this.#settle = later(160, () => this.#sharpen());
+    this.#settle = later(250, () => this.#sharpen());
     new ResizeObserver(() => this.#resized()).observe(this.element);
     this.#drags();
     this.#splits();
   }
 
   #settle;
+  /** Pictures that are on their way: what is seen is made sharp after them. */
+  #updates = 0;
   /** Whether what changes has nothing to do with noise. */
   mayBeNoisy = true;
 
@@ -60,6 +61,7 @@ export class Picture extends EventTarget {
 
   /** Renders anew; quickly, if more is to follow at once. */
   async update(quick = false) {
+    this.#updates += 1;
     this.element.classList.add("busy");
     try {
       await this.main.whole(this.#longest() * (quick ? QUICK : 1), quick && this.mayBeNoisy);
@@ -69,7 +71,8 @@ export class Picture extends EventTarget {
     } catch (error) {
       if (error.name !== "AbortError" && error.status !== 409) this.dispatchEvent(new CustomEvent("fault", { detail: error }));
     } finally {
-      this.element.classList.remove("busy");
+      this.#updates -= 1;
+      this.element.classList.toggle("busy", this.#updates > 0);
     }
   }
 
@@ -174,7 +177,7 @@ export class Picture extends EventTarget {
 
   /** Nothing moves: what is seen gets as sharp as the screen is. */
   async #sharpen() {
-    if (!this.#size || !this.main.about || this.#moving || !this.element.clientWidth) return;
+    if (!this.#size || !this.main.about || this.#updates > 0 || !this.element.clientWidth) return;
     const failed = (error) => {
       if (error.name !== "AbortError" && error.status !== 409) this.dispatchEvent(new CustomEvent("fault", { detail: error }));
     };
@@ -190,7 +193,7 @@ export class Picture extends EventTarget {
         return failed(error);
       }
       const { about } = layer;
-      if (!about || this.#moving) return;
+      if (!about || this.#updates > 0) return;
       if (this.#tiled && about.bin > 1) layer.tiles(this.#seen(), failed);
       else layer.noTiles();
     }
