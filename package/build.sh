@@ -55,6 +55,10 @@ build_static() {
         triple=x86_64-unknown-linux-gnu
         flags="-C target-feature=+crt-static"
     fi
+    # One library is C (libwebp). Without musl's own compiler the system's serves, kept from the C library's own checks.
+    if [[ $triple == *musl ]] && ! command -v musl-gcc >/dev/null; then
+        export CC_x86_64_unknown_linux_musl="${CC:-cc}" CFLAGS_x86_64_unknown_linux_musl="-U_FORTIFY_SOURCE"
+    fi
     RUSTFLAGS="$flags" cargo build --release --locked -p darkroot-cli --target "$triple"
     name="darkroot-$version-static-x86_64"
     rm -rf "${dist:?}/$name"
