@@ -12,7 +12,9 @@ class Settings(TypedDict, total=False):
     bits: Literal["auto", 8, 16, 32] | None
     quality: int | None
     chroma: Literal[444, 422, 420] | None
+    progressive: bool | None
     compression: Literal["deflate", "none"] | None
+    webp: Literal["lossless", "lossy"] | None
     metadata: Literal["all", "no-gps", "basic", "none"] | None
     artist: str | float | Sequence[float] | None
     copyright: str | float | Sequence[float] | None
@@ -25,7 +27,7 @@ class Settings(TypedDict, total=False):
     chart_reference: str | os.PathLike[str] | None
     dpi: str | float | Sequence[float] | None
     white_balance: str | float | Sequence[float] | None
-    look: Literal["neutral", "vivid", "flat", "reproduction", "linear"] | None
+    look: Literal["neutral", "vivid", "flat", "camera", "reproduction", "linear"] | None
     gamut: Literal["auto", "clip", "map"] | None
     contrast: float | None
     shadows: float | None
@@ -35,6 +37,10 @@ class Settings(TypedDict, total=False):
     curve: str | float | Sequence[float] | None
     saturation: float | None
     vibrance: float | None
+    lut: str | os.PathLike[str] | None
+    lut_space: str | float | Sequence[float] | None
+    dark: str | os.PathLike[str] | None
+    flat: str | os.PathLike[str] | None
     highlights: Literal["rebuild", "clip", "keep"] | None
     hot_pixels: Literal["auto", "off"] | None
     denoise: str | float | Sequence[float] | None
