@@ -49,6 +49,7 @@ impl Setting {
             Kind::Words(words) => one_of_words(words),
             Kind::Switch => one_of_words(&SWITCH),
             Kind::Number { least, most, whole: true, .. } => format!("a whole number in {least}..={most}"),
+            Kind::Number { least, most, unit: "", .. } => format!("a number from {least} to {most}"),
             Kind::Number { least, most, unit, .. } => format!("a number of {unit} from {least} to {most}"),
             Kind::Text { form, .. } => form.to_owned(),
             Kind::File(words) if self.name == "profile" => {
