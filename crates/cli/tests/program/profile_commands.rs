@@ -178,7 +178,7 @@ fn rows_that_cannot_be_read_are_named() {
         (&["p.toml", "--light", "A"], "r,g,b\n1,1,1\n1,grey,1\n", "line 3: `grey`"),
         (&["p.toml", "--light", "A"], "r,g,b\n1,1,inf\n", "line 2: `inf`"),
         (&["p.toml", "--light", "A"], "", "no column `r`"),
-        (&["p.toml"], "r,g,b\n1,1,1\n", "D65, A; choose one with `--light`"),
+        (&["p.toml"], "r,g,b\n1,1,1\n", "D65, A; choose one; `--light` names it"),
         (&["p.toml", "--light", "moon"], "r,g,b\n1,1,1\n", "no light `moon`"),
         (&["nothing.toml"], "r,g,b\n1,1,1\n", "there is no such file"),
         (&["Nothing D1"], "r,g,b\n1,1,1\n", "neither a profile file nor a camera"),
