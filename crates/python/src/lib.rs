@@ -26,6 +26,9 @@ mod store;
 /// What `darkroot` consists of; see the package.
 #[pyo3::pymodule]
 mod _core {
+    use numpy::PyArray1;
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use crate::batch::{batch, endings};
     #[pymodule_export]
@@ -52,7 +55,11 @@ mod _core {
     const __version__: &str = darkroot::VERSION;
 
     #[pymodule_init]
-    fn init() {
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         darkroot::keep_decoders_quiet();
+        // NumPy's functions are looked up now: later, Ctrl-C could come in between.
+        module.py().import("numpy")?;
+        drop(PyArray1::<u8>::from_vec(module.py(), Vec::new()));
+        Ok(())
     }
 }
