@@ -109,7 +109,8 @@ fn shading_is_evened_out_channel_by_channel() {
             }
         }
         for (plane, [least, most]) in means.into_iter().enumerate() {
-            assert!(most < 1.02 * least, "{letters} {plane}: {least} {most}");
+            // Blocks are a fifth of this small frame, and hold samples of a position every six pixels under X-Trans.
+            assert!(most < 1.04 * least, "{letters} {plane}: {least} {most}");
             // As bright as where the flat is brightest.
             let brightest = 0.3 * (0.9 - 0.2 * plane as f32);
             assert!(most < brightest * 1.01 && least > brightest * 0.8, "{letters} {plane}: {least} {most}");
