@@ -83,7 +83,6 @@ pub(crate) fn develop(
     // The bytes whose hash is recorded are the ones that are decoded.
     let report = develop_into(output, &job, || Ok(bytes), &settings, store, control)?;
     let profile = hash::profile(&settings, camera, store)?;
-    let files = hash::files(&settings)?;
     let written = written(&mut file).map_err(|e| Error::read(&task.output, e))?;
     let mut notes = report.notes;
     if let Some(colour) = colour {
@@ -94,7 +93,6 @@ pub(crate) fn develop(
         written,
         camera: names,
         profile,
-        files,
         colours: report.colours,
         width: report.width,
         height: report.height,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::history::History;
 use super::item::{BatchPlan, Item, State};
+use super::names::ending;
 
 /// Seconds of one worker per megabyte of raw file, where nothing tells: 24 MP of losslessly compressed NEF to JPEG.
 const SECONDS_PER_MEGABYTE: f64 = 0.07;
@@ -92,9 +93,4 @@ impl Experience {
 /// The files of a plan that are to be developed.
 pub(crate) fn todo(plan: &BatchPlan) -> impl Iterator<Item = &Item> {
     plan.items.iter().filter(|item| matches!(item.state, State::Todo(_)))
-}
-
-/// Ending of a key, lower case.
-pub(crate) fn ending(key: &str) -> String {
-    key.rsplit_once('.').map_or_else(String::new, |(_, ending)| ending.to_lowercase())
 }

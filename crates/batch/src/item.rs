@@ -127,6 +127,9 @@ pub struct Item {
     pub number: usize,
     /// Its settings.
     pub prepared: Arc<FileSettings>,
+    /// SHA-256 of the files that the settings name beside the profile, as they were when the plan was made; empty where there
+    /// are none, or one cannot be read.
+    pub(crate) files: String,
     /// Colours of its session.
     pub session: Arc<Vec<SessionColour>>,
     /// What is to be done.
@@ -246,6 +249,7 @@ mod tests {
             output: String::new(),
             number: 1,
             prepared: Arc::new(settings),
+            files: String::new(),
             session: Arc::new(vec![colour]),
             state: State::Todo(Why::New),
         };

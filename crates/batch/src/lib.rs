@@ -92,6 +92,7 @@ mod run;
 pub mod session;
 
 pub mod batch;
+mod causes;
 pub mod sheet;
 
 pub mod notice;

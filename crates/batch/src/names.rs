@@ -47,6 +47,11 @@ pub(crate) fn key_shown(key: &str) -> String {
     shown(&path_text::path(key))
 }
 
+/// The ending of a file, lower case, without the dot.
+pub(crate) fn ending(key: &str) -> String {
+    key.rsplit_once('.').map_or_else(String::new, |(_, ending)| ending.to_lowercase())
+}
+
 /// Two or more inputs for one output, also where names differ only in case.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}: would be written from more than one input ({})", key_shown(output), self.inputs_shown())]
@@ -100,7 +105,7 @@ pub fn resolve(outputs: &mut [(String, String)], owner: impl Fn(&str) -> Option<
     }
     for i in waiting {
         let (input, output) = &outputs[i];
-        let ending = input.rsplit_once('.').map_or("", |(_, e)| e).to_lowercase();
+        let ending = ending(input);
         let (stem, ext) = output.rsplit_once('.').unwrap_or((output, ""));
         let name = |n: usize| match n {
             1 => format!("{stem}-{ending}.{ext}"),
@@ -141,7 +146,7 @@ pub fn left_out(
     owner: impl Fn(&str) -> Option<String>,
 ) -> Vec<LeftOut> {
     let rank = |input: &String| {
-        let ending = input.rsplit_once('.').map_or("", |(_, e)| e).to_lowercase();
+        let ending = ending(input);
         endings.iter().position(|e| *e == ending).unwrap_or(endings.len())
     };
     let of_group = |Collision { output, inputs }: Collision| {

@@ -55,6 +55,7 @@ pub(crate) fn plan(
     }
     refuse_over_inputs(&files, &outputs, &options.out)?;
 
+    let profiles = Profiles::of(store);
     let out: HashSet<&str> = left_out.iter().map(|left| left.input.as_str()).collect();
     let items: Vec<Item> = files
         .into_iter()
@@ -64,7 +65,8 @@ pub(crate) fn plan(
         .filter(|((file, _), _)| !out.contains(file.key.as_str()))
         .map(|((source, (_, output)), (prepared, number))| {
             let session = session(&source);
-            Item { source, output, number, prepared, session, state: State::Todo(Why::New) }
+            let files = profiles.files(&prepared.settings).unwrap_or_default();
+            Item { source, output, number, prepared, files, session, state: State::Todo(Why::New) }
         })
         .collect();
     let mut plan = BatchPlan {
@@ -75,7 +77,6 @@ pub(crate) fn plan(
         left_out,
         faults: sources.faults,
     };
-    let profiles = Profiles::of(store);
     let states: Vec<State> = plan
         .items
         .par_iter()

@@ -84,7 +84,7 @@ impl<'a> Run<'a> {
             settings: item.settings_hash(&developed.camera),
             camera: developed.camera,
             profile: developed.profile,
-            files: developed.files,
+            files: item.files.clone(),
             written: developed.written,
             width: developed.width,
             height: developed.height,

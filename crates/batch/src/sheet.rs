@@ -9,6 +9,7 @@ use darkroot::{Error, VERSION, path_text, write_text};
 use maud::{Markup, html};
 use serde_json::json;
 
+use super::causes::{causes, in_page};
 use super::item::{BatchPlan, Item, State};
 use super::journal;
 use super::names::key_shown;
@@ -151,6 +152,11 @@ impl Sheet {
         Ok(())
     }
 
+    /// Key of the input and sentence of every file that failed.
+    fn failures(&self) -> Vec<(&str, &str)> {
+        self.rows.iter().filter_map(|row| Some((row.input.as_str(), row.error.as_deref()?))).collect()
+    }
+
     fn to_json(&self, plan: &BatchPlan, summary: &Summary) -> String {
         let row = |row: &Row| {
             let status = match (&row.error, row.words.as_str()) {
@@ -175,8 +181,8 @@ impl Sheet {
             "left_out": plan.left_out.iter().map(|left| json!({
                 "input": left.input, "instead": left.instead, "output": left.output,
             })).collect::<Vec<_>>(),
-            "causes": causes(&self.rows).into_iter().map(|(cause, files)| json!({
-                "cause": cause, "files": files.iter().map(|row| &row.input).collect::<Vec<_>>(),
+            "causes": causes(&self.failures()).into_iter().map(|(cause, files)| json!({
+                "cause": cause, "files": files,
             })).collect::<Vec<_>>(),
             "files": self.rows.iter().map(row).collect::<Vec<_>>(),
         });
@@ -198,14 +204,15 @@ impl Sheet {
             ));
         }
         let faults: Vec<String> = plan.faults.iter().map(ToString::to_string).collect();
-        let causes = causes(&self.rows);
+        let failures = self.failures();
+        let causes = causes(&failures);
         let body = html! {
             header { (head(plan, summary, self.stopped.as_deref())) }
             @if !faults.is_empty() || !causes.is_empty() {
                 section.failures {
                     h2 { "Failed" }
                     @if !faults.is_empty() { ul { @for words in faults { li { (words) } } } }
-                    @for (cause, files) in causes { (failed(cause, &files)) }
+                    @for (cause, files) in causes { (in_page(cause, &files)) }
                 }
             }
             @if !plan.left_out.is_empty() {
@@ -216,40 +223,6 @@ impl Sheet {
         let pictures = summary.done + summary.skipped;
         let title = format!("{pictures} pictures in {}", shown(&plan.out));
         Ok(page(&title, STYLE, body))
-    }
-}
-
-/// Failed files by cause, the one with most files first.
-fn causes(rows: &[Row]) -> Vec<(&str, Vec<&Row>)> {
-    let mut causes: Vec<(&str, Vec<&Row>)> = Vec::new();
-    for row in rows {
-        let Some(error) = &row.error else { continue };
-        let cause = without_path(error, &row.input);
-        match causes.iter_mut().find(|(known, _)| *known == cause) {
-            Some((_, files)) => files.push(row),
-            None => causes.push((cause, vec![row])),
-        }
-    }
-    causes.sort_by_key(|(_, files)| std::cmp::Reverse(files.len()));
-    causes
-}
-
-/// A sentence without the name of the input that it begins with.
-fn without_path<'a>(error: &'a str, input: &str) -> &'a str {
-    let name = key_shown(input);
-    let after = error.find(&name).map(|at| &error[at + name.len()..]);
-    after.and_then(|rest| rest.strip_prefix(": ")).unwrap_or(error)
-}
-
-/// One cause with its files; a single file stands in its sentence.
-fn failed(cause: &str, files: &[&Row]) -> Markup {
-    html! {
-        @if let [row] = files {
-            p { b { (key_shown(&row.input)) } ": " (cause) }
-        } @else {
-            p { b { (files.len()) " files" } ": " (cause) }
-            ul { @for row in files { li { (key_shown(&row.input)) } } }
-        }
     }
 }
 
@@ -337,26 +310,6 @@ mod tests {
         let row = Row { output: "a<b>&.jpg".into(), words: "\"x\"".into(), ..Row::default() };
         let page = figure(&row, "a%3Cb%3E%26.jpg", None).into_string();
         assert!(page.contains("<b>a&lt;b&gt;&amp;.jpg</b>") && page.contains("no preview"), "{page}");
-    }
-
-    #[test]
-    fn failures_stand_by_cause_the_most_frequent_first() {
-        let row = |input: &str, error: &str| Row {
-            input: input.into(),
-            error: Some(error.into()),
-            ..Row::default()
-        };
-        let rows = [
-            row("a.dng", "/in/a.dng: is empty"),
-            row("x/b.dng", "/in/x/b.dng: is damaged"),
-            row("c.dng", "/in/c.dng: is damaged"),
-            row("d.dng", "the disk is full"),
-        ];
-        let causes = causes(&rows);
-        let found: Vec<(&str, usize)> = causes.iter().map(|(cause, files)| (*cause, files.len())).collect();
-        assert_eq!(found, [("is damaged", 2), ("is empty", 1), ("the disk is full", 1)]);
-        let page = failed("is damaged", &causes[0].1).into_string();
-        assert!(page.contains("2 files") && page.contains("x/b.dng") && page.contains("c.dng"), "{page}");
     }
 
     #[test]

@@ -65,9 +65,8 @@ impl<'a> Profiles<'a> {
         Some(hash)
     }
 
-    /// Hash of the other files that the settings name, as they are now; `None` when one cannot be read.
-    fn files_now(&self, item: &Item) -> Option<String> {
-        let settings = &item.prepared.settings;
+    /// Hash of the other files that settings name, as they are now; `None` when one cannot be read.
+    pub(crate) fn files(&self, settings: &Settings) -> Option<String> {
         let key: Vec<PathBuf> = settings.files().collect();
         let mut kept = self.files.lock().ok()?;
         if let Some(hash) = kept.get(&key) {
@@ -109,7 +108,7 @@ pub(crate) fn state(
         Some(Why::SettingsChanged)
     } else if profiles.now(item, &done.camera).is_none_or(|hash| hash != done.profile) {
         Some(Why::ProfileChanged)
-    } else if profiles.files_now(item).is_none_or(|hash| hash != done.files) {
+    } else if item.files != done.files {
         Some(Why::FileChanged)
     } else {
         known.failed.as_ref().map(|_| Why::FailedBefore)

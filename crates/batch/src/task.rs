@@ -144,9 +144,6 @@ pub(crate) struct Developed {
     pub(crate) camera: CameraNames,
     /// SHA-256 of the profile; empty for the file's own matrices.
     pub(crate) profile: String,
-    /// SHA-256 of the other files that the settings name.
-    #[serde(default)]
-    pub(crate) files: String,
     /// What gave the colours, in words.
     pub(crate) colours: String,
     pub(crate) width: usize,

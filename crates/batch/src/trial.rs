@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::crew::Crew;
 use super::crew_options::CrewOptions;
-use super::estimate::{Experience, ending, todo};
+use super::estimate::{Experience, todo};
 use super::item::{BatchPlan, Item};
+use super::names::ending;
 use super::stop::Stop;
 use super::task::{Answer, Task};
 use super::work::{Next, Progress, Work};
