@@ -10,7 +10,7 @@ pub use cells::Cells;
 
 use std::sync::Arc;
 
-use darkroot_colour::RgbSpace;
+use darkroot_colour::{RgbSpace, statistics};
 use darkroot_photo::{Capture, Picture};
 use darkroot_profile::Profile;
 
@@ -218,9 +218,9 @@ fn saturation(ours: &Cells, theirs: &Cells) -> f64 {
     hundredths.clamp(CHROMA[0], CHROMA[1])
 }
 
+/// The median; 0 of nothing.
 fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    statistics::median(&mut values).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use darkroot_photo::{Capture, Counts, Layout, Mosaic};
 use rayon::prelude::*;
 
-use super::Medians;
+use super::{Medians, middle};
 use crate::light::{LinearLight, channels};
 
 /// Share of the range from black to white from which on a pixel is replaced: what it counts of light drowns in the noise of
@@ -135,7 +135,5 @@ fn around<T: Sample>(mosaic: &Mosaic<T>, area: &Area, hot: &[usize], i: usize) -
     found.sort_by_key(|(away, _)| *away);
     found.truncate(NEAREST);
     let mut values: Vec<f32> = found.into_iter().map(|(_, v)| v).collect();
-    values.sort_unstable_by(f32::total_cmp);
-    let n = values.len();
-    (n > 0).then(|| T::of(0.5 * (values[(n - 1) / 2] + values[n / 2])))
+    (!values.is_empty()).then(|| T::of(middle(&mut values)))
 }

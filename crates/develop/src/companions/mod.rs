@@ -19,6 +19,14 @@ pub fn fits(frame: &Capture, capture: &Capture) -> bool {
         && frame.active_area == capture.active_area
 }
 
+/// The middle of values, of which there is at least one: the mean of the two in the middle where their number is even, since
+/// frames are few.
+fn middle(values: &mut [f32]) -> f32 {
+    values.sort_unstable_by(f32::total_cmp);
+    let n = values.len();
+    0.5 * (values[(n - 1) / 2] + values[n / 2])
+}
+
 /// Rows of several frames, one after the other, and their median.
 struct Medians {
     rows: Vec<Vec<f32>>,
@@ -37,13 +45,11 @@ impl Medians {
         for (frame, row) in self.rows.iter_mut().enumerate() {
             light(frame, row);
         }
-        let n = self.values.len();
         for (x, out) in out.iter_mut().enumerate() {
             for (value, row) in self.values.iter_mut().zip(&self.rows) {
                 *value = row[x];
             }
-            self.values.sort_unstable_by(f32::total_cmp);
-            *out = 0.5 * (self.values[(n - 1) / 2] + self.values[n / 2]);
+            *out = middle(&mut self.values);
         }
     }
 }

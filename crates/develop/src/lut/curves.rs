@@ -1,5 +1,7 @@
 //! A table for each channel, straight between its entries.
 
+use super::alike;
+
 /// A table for each channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curves {
@@ -60,10 +62,9 @@ impl Curves {
     /// Whether the three channels get the same.
     pub(super) fn are_alike(&self) -> bool {
         let tables = self.tables.iter().all(|t| *t == self.tables[0]);
-        let even = |v: [f32; 3]| v.iter().all(|x| x.to_bits() == v[0].to_bits());
         tables
             && match self.entries {
-                Entries::Even { least, most } => even(least) && even(most),
+                Entries::Even { least, most } => alike(least) && alike(most),
                 Entries::Halves => true,
             }
     }

@@ -1,5 +1,7 @@
 //! Steps that are formulas, as the Common LUT Format defines them (Academy S-2014-006, version 3).
 
+use super::alike;
+
 /// A straight line from one range to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
@@ -168,8 +170,7 @@ pub struct Cdl {
 
 impl Cdl {
     pub(super) fn is_one_curve(&self) -> bool {
-        let even = |v: [f32; 3]| v.iter().all(|x| x.to_bits() == v[0].to_bits());
-        even(self.slope) && even(self.offset) && even(self.power) && (self.saturation - 1.0).abs() <= 0.0
+        alike(self.slope) && alike(self.offset) && alike(self.power) && (self.saturation - 1.0).abs() <= 0.0
     }
 
     fn cut(&self, v: f32) -> f32 {

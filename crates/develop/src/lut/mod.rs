@@ -62,15 +62,9 @@ impl Step {
     fn is_one_curve(&self) -> bool {
         match self {
             Self::Matrix(matrix, offset) => {
-                let [[r, ..], [_, g, _], [.., b]] = *matrix;
-                let beside = matrix.iter().enumerate().flat_map(|(i, row)| {
-                    row.iter().enumerate().filter(move |(j, _)| *j != i).map(|(_, v)| *v)
-                });
-                let same = |a: f32, b: f32| a.to_bits() == b.to_bits();
-                same(r, g) && same(g, b) && offset.iter().all(|v| same(*v, offset[0])) && {
-                    let mut beside = beside;
-                    beside.all(|v| v.abs() <= 0.0)
-                }
+                let [[r, rg, rb], [gr, g, gb], [br, bg, b]] = *matrix;
+                let beside = [rg, rb, gr, gb, br, bg];
+                alike([r, g, b]) && alike(*offset) && beside.iter().all(|v| v.abs() <= 0.0)
             }
             Self::Curves(curves) => curves.are_alike(),
             Self::Cube(_) => false,
@@ -80,6 +74,11 @@ impl Step {
             Self::Cdl(cdl) => cdl.is_one_curve(),
         }
     }
+}
+
+/// Whether three channels have the very same number.
+fn alike(v: [f32; 3]) -> bool {
+    v.iter().all(|x| x.to_bits() == v[0].to_bits())
 }
 
 /// The steps of a file.
