@@ -74,17 +74,9 @@ pub(crate) fn calibrate(
     let layout = charts::layout(&task.layout)?;
     let reference = charts::reference(task.reference.as_deref(), &layout)?;
     let named = task.light.as_deref().map(light::find).transpose()?;
-    let request = ChartRequest {
-        shots: vec![(input.clone(), named.clone().unwrap_or_else(LightSource::assumed))],
-        layout,
-        reference: reference.colours,
-        reference_name: reference.name,
-        reference_sha256: reference.sha256,
-        options: ShotOptions::default(),
-        kind: None,
-        average: false,
-        date: String::new(),
-    };
+    let light = named.clone().unwrap_or_else(LightSource::assumed);
+    let shots = vec![(input.clone(), light)];
+    let request = ChartRequest::of(shots, layout, reference, ShotOptions::default());
     let made = made_in_its_light(request, named.is_some(), settings)?;
     let first = made.lights.first().ok_or(Error::NoLight)?;
     let camera = first.shots.first().map(|s| CameraNames::from(&s.camera)).unwrap_or_default();

@@ -10,6 +10,7 @@ use darkroot_chart::{ChartLayout, Reference};
 use darkroot_photo::Camera;
 use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
 
+use crate::charts::NamedReference;
 use crate::fault::ChartError;
 use crate::light::LightSource;
 use crate::shot::{Gate, Shot, ShotOptions, View, common_name, open, refuse};
@@ -43,6 +44,28 @@ pub struct ChartRequest {
     pub kind: Option<Kind>,
     /// Day that the profile carries, YYYY-MM-DD; may be empty.
     pub date: String,
+}
+
+impl ChartRequest {
+    /// For shots with the light of each: the best model, no day, and no mean of shots at one exposure.
+    pub fn of(
+        shots: Vec<(PathBuf, LightSource)>,
+        layout: ChartLayout,
+        reference: NamedReference,
+        options: ShotOptions,
+    ) -> Self {
+        Self {
+            shots,
+            layout,
+            reference: reference.colours,
+            reference_name: reference.name,
+            reference_sha256: reference.sha256,
+            options,
+            average: false,
+            kind: None,
+            date: String::new(),
+        }
+    }
 }
 
 /// One light of a made profile.

@@ -50,17 +50,7 @@ impl Said {
             accept: self.accept,
             allow_rendered: self.allow_rendered,
         };
-        Ok(ChartRequest {
-            shots,
-            layout,
-            reference: reference.colours,
-            reference_name: reference.name,
-            reference_sha256: reference.sha256,
-            options,
-            average: false,
-            kind: None,
-            date: String::new(),
-        })
+        Ok(ChartRequest::of(shots, layout, reference, options))
     }
 }
 

@@ -109,14 +109,7 @@ fn identity(path: &Path, settings: &Settings) -> Result<Identity, Fault> {
 
 fn decode(place: &Place, store: &ProfileStore, settings: &Settings) -> Result<Open, darkroot::Error> {
     let bytes = place.read()?;
-    let path = place.path.clone();
-    let of_raw = |source| darkroot::Error::Raw { path: path.clone(), source };
-    let photo = if settings.from_preview {
-        let photo = Photo::open_preview(&bytes, &settings.limits).map_err(of_raw)?;
-        photo.ok_or_else(|| darkroot::Error::NoPreview { path: path.clone() })?
-    } else {
-        Photo::open_for(&bytes, store, settings).map_err(of_raw)?.with_frames(settings)?
-    };
+    let photo = darkroot::job::opened(&place.path, &bytes, settings, store)?;
     let analysis = photo.analyse_as_asked();
-    Ok(Open { photo, analysis, path })
+    Ok(Open { photo, analysis, path: place.path.clone() })
 }

@@ -149,16 +149,7 @@ impl ShotArgs {
         let shots = in_lights(files, lights)?;
         let layout = charts::layout(&self.chart)?;
         let reference = charts::reference(self.reference.as_deref(), &layout)?;
-        Ok(ChartRequest {
-            shots,
-            layout,
-            reference: reference.colours,
-            reference_name: reference.name,
-            reference_sha256: reference.sha256,
-            options: self.options(unless_said),
-            average: false,
-            kind,
-            date: date.to_owned(),
-        })
+        let request = ChartRequest::of(shots, layout, reference, self.options(unless_said));
+        Ok(ChartRequest { kind, date: date.to_owned(), ..request })
     }
 }

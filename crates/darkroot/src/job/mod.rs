@@ -1,5 +1,6 @@
 //! Developing one file.
 
+mod decoded;
 mod report;
 
 use std::io;
@@ -14,10 +15,12 @@ use crate::files::{self, Failed, Output};
 use crate::from_chart::Told;
 use crate::metadata::{About, of_picture};
 use crate::photo::Photo;
-use crate::settings::{ChartShot, Engine, Settings};
+use crate::settings::{Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
-use crate::{Error, Job, frames, from_chart, lut, provenance};
+use crate::{Error, Job, from_chart, lut, provenance};
 
+pub use decoded::opened;
+use decoded::{Decoded, decoded};
 pub use report::{Report, colours};
 use report::{blank_report, far_light};
 
@@ -167,41 +170,6 @@ pub fn develop_into(
         seconds: start.elapsed().as_secs_f64(),
         ..report
     })
-}
-
-/// A photograph, what a shot of a chart tells of it, and the hash of its file where a reproduction states it.
-struct Decoded {
-    photo: Photo,
-    told: Option<Told>,
-    hash: String,
-}
-
-fn decoded(
-    input: &Path,
-    read: impl FnOnce() -> Result<Vec<u8>, Error>,
-    settings: &Settings,
-    store: &ProfileStore,
-    recipe: &Recipe,
-) -> Result<Decoded, Error> {
-    let told = from_chart::of_file(settings)?;
-    let bytes = read()?;
-    let photo = frames::apply(open(input, &bytes, settings, store)?, settings)?;
-    let told = match settings.chart.shot {
-        ChartShot::Itself => Some(from_chart::of_photo(input, &photo, &settings.chart)?),
-        _ => told,
-    };
-    let hash = if recipe.look == Look::Reproduction { files::sha256(&bytes) } else { String::new() };
-    Ok(Decoded { photo, told, hash })
-}
-
-/// The samples of a raw file, or its embedded JPEG where that is asked for.
-fn open(input: &Path, bytes: &[u8], settings: &Settings, store: &ProfileStore) -> Result<Photo, Error> {
-    let of_raw = |source| Error::Raw { path: input.to_owned(), source };
-    if settings.from_preview {
-        let photo = Photo::open_preview(bytes, &settings.limits).map_err(of_raw)?;
-        return photo.ok_or_else(|| Error::NoPreview { path: input.to_owned() });
-    }
-    Photo::open_for(bytes, store, settings).map_err(of_raw)
 }
 
 /// Why no picture was written.

@@ -8,7 +8,11 @@ pub use setting::{Changes, Group, Kind, Setting, Word};
 pub mod from_chart;
 pub use from_chart::{ChartShot, FromChart};
 
+pub mod error;
+pub use error::SettingsError;
+
 mod about;
+mod check;
 mod files;
 mod frames;
 mod geometry;
@@ -114,83 +118,6 @@ pub struct Settings {
     pub tree: Option<Tree>,
 }
 
-/// Settings that contradict each other. Each message says what to do.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SettingsError {
-    /// The format cannot hold that many bits.
-    #[error("{format} cannot hold {bits} bits a sample, only {allowed}")]
-    Bits {
-        /// The format.
-        format: &'static str,
-        /// What was asked.
-        bits: u8,
-        /// What it can hold.
-        allowed: String,
-    },
-    /// The format cannot hold the space.
-    #[error(transparent)]
-    Space(#[from] darkroot_encode::Error),
-    /// Linear light in 8 bits.
-    #[error("{format} cannot hold linear light: 8 bits are too coarse for it; write a .tif or .exr file")]
-    LinearInEightBits {
-        /// The format.
-        format: &'static str,
-    },
-    /// A curve on top of the linear look.
-    #[error(
-        "the linear look keeps numbers proportional to light, but {space} bends them; use {space}-linear"
-    )]
-    CurveOnLinear {
-        /// The space.
-        space: String,
-    },
-    /// Changes of a look on top of the linear one.
-    #[error("numbers proportional to light leave no room for {}: choose another look for that", settings.join(", "))]
-    TonesOnLinear {
-        /// Names of the settings that ask for it.
-        settings: Vec<&'static str>,
-    },
-    /// Changes of a look on top of colours as measured.
-    #[error("a reproduction shows what was measured and leaves no room for {}: choose another look for that", settings.join(", "))]
-    TonesOnReproduction {
-        /// Names of the settings that ask for it.
-        settings: Vec<&'static str>,
-    },
-    /// A curve where the camera's own is asked for.
-    #[error("the look of the camera has a curve of its own: leave out curve, or choose another look")]
-    CurveOnCamera,
-    /// Something of a chart without its shot.
-    #[error(
-        "{setting} asks for what a chart shows, and no shot of one is named; name it with exposure-from-chart"
-    )]
-    NoChartShot {
-        /// Name of the setting that asks for it.
-        setting: &'static str,
-    },
-    /// An exposure from a chart where it cannot hold.
-    #[error("exposure-from-chart does not go with {setting} as it is set; leave one of them out")]
-    ChartWith {
-        /// Name of the other setting.
-        setting: &'static str,
-    },
-    /// Camera RGB in an integer format.
-    #[error("camera RGB is for measurement: write a 32-bit .tif or an .exr file")]
-    CameraNeedsFloat,
-    /// The embedded JPEG, where light of the scene is asked for.
-    #[error("the embedded JPEG is the camera's own rendering, and no scene light as {} asks for", settings.join(", "))]
-    Preview {
-        /// Names of the settings that ask for it.
-        settings: Vec<&'static str>,
-    },
-    /// Options that the second engine does not have.
-    #[error("imagepipe has its own fixed rendering in sRGB and does not heed {}", settings.join(", "))]
-    Engine {
-        /// Names of the settings that it does not heed.
-        settings: Vec<&'static str>,
-    },
-}
-
 impl Settings {
     /// Files and folders that are read for these settings beside the photograph and its profile.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
@@ -230,7 +157,7 @@ impl Settings {
         if camera && (bits != 32 || !matches!(format, Format::Tiff | Format::Exr)) {
             return Err(SettingsError::CameraNeedsFloat);
         }
-        check_tones(self, &recipe, linear || camera)?;
+        check::tones(self, &recipe, linear || camera)?;
         if recipe.look == Look::Camera && recipe.tones.curve.is_some() {
             return Err(SettingsError::CurveOnCamera);
         }
@@ -253,67 +180,13 @@ impl Settings {
         };
         format.accepts(&space)?;
         if self.engine == Engine::Imagepipe {
-            check_imagepipe(self, &recipe)?;
+            check::imagepipe(self, &recipe)?;
         }
         if self.from_preview {
-            check_preview(self, &recipe)?;
+            check::preview(self, &recipe)?;
         }
         Ok(recipe)
     }
-}
-
-/// Linear light has no look that could be changed.
-fn check_tones(settings: &Settings, recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
-    let settings = tones::changed(settings);
-    match recipe.look {
-        _ if settings.is_empty() => Ok(()),
-        _ if linear => Err(SettingsError::TonesOnLinear { settings }),
-        Look::Reproduction => Err(SettingsError::TonesOnReproduction { settings }),
-        _ => Ok(()),
-    }
-}
-
-/// What is about the sensor's light has no meaning for a picture that the camera rendered.
-fn check_preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
-    let asks = [
-        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear | Look::Camera)),
-        ("space", recipe.output.space == OutputSpace::Camera),
-        ("profile", matches!(settings.profile, ProfileChoice::File(_))),
-        ("engine", settings.engine == Engine::Imagepipe),
-        ("dark", settings.dark.is_some()),
-        ("flat", settings.flat.is_some()),
-    ];
-    let mut asked: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
-    // The camera's rendering has its own curve, and no look is laid over it.
-    asked.extend(tones::changed(settings));
-    if asked.is_empty() { Ok(()) } else { Err(SettingsError::Preview { settings: asked }) }
-}
-
-fn check_imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
-    let fixed = Recipe::default();
-    let heeded = [
-        ("profile", settings.profile == ProfileChoice::Automatic),
-        ("space", recipe.output.space == OutputSpace::Rgb(RgbSpace::SRGB)),
-        ("bits", recipe.output.bits != Bits::Float),
-        ("look", recipe.look == fixed.look),
-        ("gamut", recipe.gamut == fixed.gamut),
-        ("exposure-from-chart", settings.chart.shot == ChartShot::None),
-        ("exposure", recipe.exposure == fixed.exposure),
-        ("white-balance", recipe.balance == fixed.balance),
-        ("highlights", recipe.highlights == fixed.highlights),
-        ("hot-pixels", recipe.hot_pixels == fixed.hot_pixels),
-        ("denoise", recipe.denoise == fixed.denoise),
-        ("sharpen", recipe.sharpen == fixed.sharpen),
-        ("demosaic", recipe.demosaic == fixed.demosaic),
-        ("crop", recipe.crop == fixed.crop),
-        ("contrast, saturation and their like", recipe.tones == fixed.tones),
-        ("lut", settings.lut.is_none()),
-        ("dark", settings.dark.is_none()),
-        ("flat", settings.flat.is_none()),
-        ("rotate, straighten, lens, resize and their like", recipe.geometry == fixed.geometry),
-    ];
-    let unheeded: Vec<&str> = heeded.iter().filter(|(_, fits)| !fits).map(|(name, _)| *name).collect();
-    if unheeded.is_empty() { Ok(()) } else { Err(SettingsError::Engine { settings: unheeded }) }
 }
 
 #[cfg(test)]

@@ -170,14 +170,10 @@ mod tests {
 
     /// The same picture by a library that was written by others.
     fn file_of_others(picture: &Picture, options: &Options) -> Vec<u8> {
-        use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder, SamplingFactor};
+        use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder};
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, options.quality);
-        encoder.set_sampling_factor(match options.subsampling {
-            ChromaSubsampling::S444 => SamplingFactor::R_4_4_4,
-            ChromaSubsampling::S422 => SamplingFactor::R_4_2_2,
-            ChromaSubsampling::S420 => SamplingFactor::R_4_2_0,
-        });
+        encoder.set_sampling_factor(progressive::sampling(options.subsampling));
         encoder.set_chroma_subsampling_method(ChromaSubsamplingMethod::Average);
         let Samples::U8(samples) = &picture.samples else { panic!() };
         let (width, height) = (picture.size.width as u16, picture.size.height as u16);

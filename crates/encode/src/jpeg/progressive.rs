@@ -7,15 +7,20 @@ use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder, QuantizationTabl
 use super::tables::Kind;
 use crate::{ChromaSubsampling, Error, Format, Options};
 
+/// The library's name for a subsampling.
+pub(super) fn sampling(subsampling: ChromaSubsampling) -> SamplingFactor {
+    match subsampling {
+        ChromaSubsampling::S444 => SamplingFactor::R_4_4_4,
+        ChromaSubsampling::S422 => SamplingFactor::R_4_2_2,
+        ChromaSubsampling::S420 => SamplingFactor::R_4_2_0,
+    }
+}
+
 /// What stands in a file behind what it says of the picture: tables, scans, the end.
 pub(super) fn scans(size: Size, samples: &[u8], options: &Options) -> Result<Vec<u8>, Error> {
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, options.quality);
-    encoder.set_sampling_factor(match options.subsampling {
-        ChromaSubsampling::S444 => SamplingFactor::R_4_4_4,
-        ChromaSubsampling::S422 => SamplingFactor::R_4_2_2,
-        ChromaSubsampling::S420 => SamplingFactor::R_4_2_0,
-    });
+    encoder.set_sampling_factor(sampling(options.subsampling));
     encoder.set_chroma_subsampling_method(ChromaSubsamplingMethod::Average);
     // The same steps as in the baseline.
     let [luma, chroma] = Kind::BOTH

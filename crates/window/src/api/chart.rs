@@ -230,23 +230,13 @@ pub(crate) async fn fit(
     aside(move || {
         let path = shared.roots.file(&asked.file)?.path;
         let layout = asked.layout(&shared)?;
-        let NamedReference { colours, name, sha256 } = asked.reference(&shared, &layout)?;
+        let reference = asked.reference(&shared, &layout)?;
         let text = asked.light.as_deref().unwrap_or_default();
         if LightSource::by_name(text).is_none() {
             reachable(&shared, text)?;
         }
         let light = light::find(text).map_err(unusable)?;
-        let request = ChartRequest {
-            shots: vec![(path.clone(), light)],
-            layout,
-            reference: colours,
-            reference_name: name,
-            reference_sha256: sha256,
-            options: asked.options(),
-            average: false,
-            kind: None,
-            date: String::new(),
-        };
+        let request = ChartRequest::of(vec![(path.clone(), light)], layout, reference, asked.options());
         let profile = make_profile(&request, &Settings::default()).map_err(unusable)?;
         let report = report::html(&profile, &request.layout);
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

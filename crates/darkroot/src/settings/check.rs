@@ -1,0 +1,61 @@
+//! What of the settings does not go together.
+
+use darkroot_colour::RgbSpace;
+use darkroot_develop::{Bits, Look, OutputSpace, Recipe};
+
+use super::tones::changed;
+use super::{ChartShot, Engine, ProfileChoice, Settings, SettingsError};
+
+/// Linear light has no look that could be changed.
+pub(super) fn tones(settings: &Settings, recipe: &Recipe, linear: bool) -> Result<(), SettingsError> {
+    let settings = changed(settings);
+    match recipe.look {
+        _ if settings.is_empty() => Ok(()),
+        _ if linear => Err(SettingsError::TonesOnLinear { settings }),
+        Look::Reproduction => Err(SettingsError::TonesOnReproduction { settings }),
+        _ => Ok(()),
+    }
+}
+
+/// What is about the sensor's light has no meaning for a picture that the camera rendered.
+pub(super) fn preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
+    let asks = [
+        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear | Look::Camera)),
+        ("space", recipe.output.space == OutputSpace::Camera),
+        ("profile", matches!(settings.profile, ProfileChoice::File(_))),
+        ("engine", settings.engine == Engine::Imagepipe),
+        ("dark", settings.dark.is_some()),
+        ("flat", settings.flat.is_some()),
+    ];
+    let mut asked: Vec<&str> = asks.iter().filter(|(_, asks)| *asks).map(|(name, _)| *name).collect();
+    // The camera's rendering has its own curve, and no look is laid over it.
+    asked.extend(changed(settings));
+    if asked.is_empty() { Ok(()) } else { Err(SettingsError::Preview { settings: asked }) }
+}
+
+pub(super) fn imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
+    let fixed = Recipe::default();
+    let heeded = [
+        ("profile", settings.profile == ProfileChoice::Automatic),
+        ("space", recipe.output.space == OutputSpace::Rgb(RgbSpace::SRGB)),
+        ("bits", recipe.output.bits != Bits::Float),
+        ("look", recipe.look == fixed.look),
+        ("gamut", recipe.gamut == fixed.gamut),
+        ("exposure-from-chart", settings.chart.shot == ChartShot::None),
+        ("exposure", recipe.exposure == fixed.exposure),
+        ("white-balance", recipe.balance == fixed.balance),
+        ("highlights", recipe.highlights == fixed.highlights),
+        ("hot-pixels", recipe.hot_pixels == fixed.hot_pixels),
+        ("denoise", recipe.denoise == fixed.denoise),
+        ("sharpen", recipe.sharpen == fixed.sharpen),
+        ("demosaic", recipe.demosaic == fixed.demosaic),
+        ("crop", recipe.crop == fixed.crop),
+        ("contrast, saturation and their like", recipe.tones == fixed.tones),
+        ("lut", settings.lut.is_none()),
+        ("dark", settings.dark.is_none()),
+        ("flat", settings.flat.is_none()),
+        ("rotate, straighten, lens, resize and their like", recipe.geometry == fixed.geometry),
+    ];
+    let unheeded: Vec<&str> = heeded.iter().filter(|(_, fits)| !fits).map(|(name, _)| *name).collect();
+    if unheeded.is_empty() { Ok(()) } else { Err(SettingsError::Engine { settings: unheeded }) }
+}
