@@ -206,6 +206,6 @@ pub fn lab(space: &RgbSpace, encoded: [f64; 3]) -> Lab {
 pub fn space_of(picture: &Picture) -> RgbSpace {
     match picture.space {
         PictureSpace::Rgb(space) => space,
-        PictureSpace::Camera => panic!("camera RGB is no RGB space"),
+        PictureSpace::Camera | PictureSpace::Raw => panic!("camera RGB is no RGB space"),
     }
 }

@@ -66,7 +66,7 @@ pub(crate) fn develop(
 fn encoder(format: Format, bits: Bits, picture: u64, pixels: u64) -> u64 {
     match format {
         // Bands that wait for those above them.
-        Format::Jpeg | Format::Png | Format::Tiff => picture / 2,
+        Format::Jpeg | Format::Png | Format::Tiff | Format::Dng => picture / 2,
         Format::Webp => 5 * pixels,
         Format::Avif => 40 * pixels,
         Format::Exr => picture / 8,

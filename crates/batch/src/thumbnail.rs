@@ -15,7 +15,7 @@ const QUALITY: u8 = 78;
 pub(crate) fn of_picture(picture: &Picture) -> Option<String> {
     let space = match picture.space {
         PictureSpace::Rgb(space) => space,
-        PictureSpace::Camera => RgbSpace::SRGB.linear(),
+        PictureSpace::Camera | PictureSpace::Raw => RgbSpace::SRGB.linear(),
     };
     let white = darkroot_colour::white::D65;
     let to_srgb = RgbSpace::SRGB.from_xyz_under(white) * space.to_xyz_under(white);

@@ -210,6 +210,14 @@ pub enum Error {
         /// The output.
         path: PathBuf,
     },
+    /// The colours of a photograph do not fit into a DNG.
+    #[error("{path}: its colours cannot go into a DNG: {}", sentence(source), path = shown(path))]
+    Dng {
+        /// The raw file.
+        path: PathBuf,
+        /// Why not.
+        source: darkroot_profile::export::Error,
+    },
     /// The format cannot hold the picture.
     #[error("{path}: {}", sentence(source), path = shown(path))]
     Encode {

@@ -40,6 +40,7 @@ pub use frames::FrameFault;
 
 pub mod lut;
 
+mod dng;
 mod from_chart;
 mod provenance;
 

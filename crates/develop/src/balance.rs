@@ -1,6 +1,6 @@
 //! White balance: multipliers that make the white of the light (1,1,1).
 
-use darkroot_photo::Layout;
+use darkroot_photo::{CameraSpace, Layout, Rgb};
 
 /// Multiplies a run of samples of row `y` by the multipliers of their filters; the first sample is that of
 /// column `x` (all samples of a pixel are there).
@@ -29,4 +29,14 @@ pub fn row(light: &mut [f32], layout: &Layout, multipliers: [f32; 3], x: usize, 
         }
         Layout::Monochrome => {}
     }
+}
+
+/// Divides a picture by the multipliers that its samples were multiplied by.
+pub fn undo(mut picture: Rgb<CameraSpace>, multipliers: [f32; 3]) -> Rgb<CameraSpace> {
+    for (plane, multiplier) in picture.planes_mut().into_iter().zip(multipliers) {
+        for v in plane {
+            *v /= multiplier;
+        }
+    }
+    picture
 }

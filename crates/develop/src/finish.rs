@@ -6,8 +6,9 @@ use darkroot_photo::{CameraSpace, Display, Orientation, Rect, Rgb, Scene, Size};
 use crate::gamut::Mapping;
 use crate::grid::Grid;
 use crate::plan::Plan;
+use crate::recipe::OutputSpace;
 use crate::transfer::{self, Sample};
-use crate::{correct, exposure, gamut, highlights, lut, tally, tone};
+use crate::{balance, correct, exposure, gamut, highlights, lut, tally, tone};
 
 /// Pixels that go through the stages together.
 const PIXELS: usize = 2048;
@@ -67,6 +68,9 @@ impl<T: Sample> Finish<T> {
 fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     highlights::neutralise(&mut camera, &plan.highlights);
     let Some(model) = &plan.model else {
+        if plan.space == OutputSpace::Raw {
+            return balance::undo(camera, plan.multipliers).into_space();
+        }
         return exposure::expose(camera.into_space::<Scene>(), plan.gain).into_space();
     };
     let scene = correct::correct(exposure::darken(camera, plan.veil), model);

@@ -107,6 +107,11 @@ impl Plan {
         Some(model.xyz([0, 1, 2].map(|c| camera[c] * f64::from(self.multipliers[c]))))
     }
 
+    /// The model that takes balanced camera RGB to XYZ relative to D50; `None` for balanced camera output.
+    pub fn colour_model(&self) -> Option<&Model> {
+        self.colour_model.as_ref()
+    }
+
     /// Size of the developed picture at a scale, upright.
     pub fn size_at(&self, scale: Scale) -> Size {
         scale.of(self.laid.size)
@@ -123,13 +128,14 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let layout = capture.counts.layout();
     let demosaic =
         Method::of(layout, recipe.demosaic).ok_or_else(|| Error::Filters { filters: filters(layout) })?;
-    let camera_output = recipe.output.space == OutputSpace::Camera;
+    let raw_output = recipe.output.space == OutputSpace::Raw;
+    let camera_output = raw_output || recipe.output.space == OutputSpace::Camera;
     // What the camera rendered for display has its look already.
     let overlay = recipe.lut.as_ref();
     let curve = Curve::of(recipe.look, &recipe.tones, overlay).filter(|_| !capture.rendered);
     let reproduced = recipe.look == Look::Reproduction && !capture.rendered;
     let linear = curve.is_none() && !reproduced;
-    let measuring = linear || camera_output;
+    let measuring = linear || camera_output && !raw_output;
     // Neither noise nor blur of the original's picture is anybody's to take away unasked.
     let as_it_is = measuring || reproduced;
     let laid = lay(capture, recipe.crop, &recipe.geometry, measuring)?;
@@ -141,7 +147,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let (colours, model) = colours(analysis, profile, neutral, white, &mut notes);
     let (space, transfer) = match recipe.output.space {
         OutputSpace::Rgb(space) => (space, space.curve),
-        OutputSpace::Camera => (RgbSpace::REC2020, TransferCurve::Linear),
+        OutputSpace::Camera | OutputSpace::Raw => (RgbSpace::REC2020, TransferCurve::Linear),
     };
     let mends = mends(analysis, recipe.hot_pixels, measuring);
     notes.extend(mends.notes());
@@ -174,7 +180,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         mends,
         denoiser,
         lateral,
-        sharpener: sharpener(analysis, recipe.sharpen, as_it_is, multipliers),
+        sharpener: sharpener(analysis, recipe.sharpen, as_it_is || raw_output, multipliers),
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
             _ if camera_output => Treatment::Keep,
@@ -186,7 +192,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
             let to_scene = RgbSpace::REC2020.from_xyz_under(white::D50);
             PlaneModel::new(&model.then(&to_scene))
         }),
-        colour_model: (!camera_output).then_some(model),
+        colour_model: (recipe.output.space != OutputSpace::Camera).then_some(model),
         gamut: Mapping::of(recipe.gamut, linear, reproduced),
         tally: Arc::default(),
         lut: overlay.filter(|_| curve.is_some()).and_then(lut::Laid::of),

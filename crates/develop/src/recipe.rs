@@ -178,6 +178,9 @@ pub enum OutputSpace {
     Rgb(RgbSpace),
     /// Linear, balanced camera RGB before any profile.
     Camera,
+    /// Linear camera RGB that is not balanced, for another raw developer. Noise, hot pixels and the lens are corrected as for
+    /// people, but nothing is rebuilt, exposed or sharpened.
+    Raw,
 }
 
 impl Default for OutputSpace {

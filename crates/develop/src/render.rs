@@ -94,6 +94,7 @@ impl Plan {
         match self.space {
             OutputSpace::Rgb(space) => PictureSpace::Rgb(space),
             OutputSpace::Camera => PictureSpace::Camera,
+            OutputSpace::Raw => PictureSpace::Raw,
         }
     }
 

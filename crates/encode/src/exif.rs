@@ -114,7 +114,7 @@ pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, 
     }
     let srgb = match space {
         PictureSpace::Rgb(space) => crate::format::same_colours(space, &RgbSpace::SRGB),
-        PictureSpace::Camera => false,
+        PictureSpace::Camera | PictureSpace::Raw => false,
     };
     let mut set = |tag, value| metadata.set(Directory::Exif, tag, value);
     set(tag::COLOUR_SPACE, Value::Shorts(vec![if srgb { 1 } else { UNCALIBRATED }]));

@@ -24,15 +24,17 @@ pub enum Format {
     Exr,
     /// JPEG XL, lossless.
     Jxl,
+    /// Digital Negative: linear camera RGB for other raw developers.
+    Dng,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 7] =
-        [Self::Jpeg, Self::Png, Self::Tiff, Self::Webp, Self::Avif, Self::Exr, Self::Jxl];
+    pub const ALL: [Self; 8] =
+        [Self::Jpeg, Self::Png, Self::Tiff, Self::Webp, Self::Avif, Self::Exr, Self::Jxl, Self::Dng];
 
     /// The format that files with this extension have (without the dot, in any case); `None` when it is not one
-    /// of jpg, jpeg, jpe, png, tif, tiff, webp, avif, exr and jxl.
+    /// of jpg, jpeg, jpe, png, tif, tiff, webp, avif, exr, jxl and dng.
     pub fn from_extension(ext: &str) -> Option<Self> {
         match ext.to_ascii_lowercase().as_str() {
             "jpg" | "jpeg" | "jpe" => Some(Self::Jpeg),
@@ -42,6 +44,7 @@ impl Format {
             "avif" => Some(Self::Avif),
             "exr" => Some(Self::Exr),
             "jxl" => Some(Self::Jxl),
+            "dng" => Some(Self::Dng),
             _ => None,
         }
     }
@@ -56,6 +59,7 @@ impl Format {
             Self::Avif => "avif",
             Self::Exr => "exr",
             Self::Jxl => "jxl",
+            Self::Dng => "dng",
         }
     }
 
@@ -69,6 +73,7 @@ impl Format {
             Self::Avif => "AVIF",
             Self::Exr => "OpenEXR",
             Self::Jxl => "JPEG XL",
+            Self::Dng => "DNG",
         }
     }
 
@@ -79,13 +84,14 @@ impl Format {
             Self::Png | Self::Jxl => &[8, 16],
             Self::Tiff => &[8, 16, 32],
             Self::Exr => &[32],
+            Self::Dng => &[16],
         }
     }
 
     /// Bits a sample where nobody asks for others: 16 in TIFF, as it is for further work, else the fewest.
     pub fn default_bits(self) -> u8 {
         match self {
-            Self::Tiff => 16,
+            Self::Tiff | Self::Dng => 16,
             Self::Exr => 32,
             Self::Jpeg | Self::Png | Self::Webp | Self::Avif | Self::Jxl => 8,
         }
@@ -99,7 +105,7 @@ impl Format {
     /// Largest width and height in pixels.
     pub fn largest_side(self) -> usize {
         match self {
-            Self::Jpeg | Self::Avif => 65_535,
+            Self::Jpeg | Self::Avif | Self::Dng => 65_535,
             Self::Webp => 16_383,
             Self::Png | Self::Exr | Self::Tiff => i32::MAX as usize,
             Self::Jxl => (1 << 30) - 1,
@@ -124,7 +130,7 @@ impl Format {
     /// Whether a file of this format can be written while its picture is made: see
     /// [`write_in_bands`](crate::write_in_bands).
     pub fn takes_bands(self) -> bool {
-        matches!(self, Self::Jpeg | Self::Png | Self::Tiff)
+        matches!(self, Self::Jpeg | Self::Png | Self::Tiff | Self::Dng)
     }
 
     /// Whether the format can hold a picture in that space and say so to whoever reads it.
@@ -134,6 +140,9 @@ impl Format {
     /// [`Error::Space`], whose message says why not and what to choose instead.
     pub fn accepts(self, space: &PictureSpace) -> Result<(), Error> {
         let refused = match (self, space) {
+            (Self::Dng, PictureSpace::Raw) => None,
+            (Self::Dng, _) => Some("it holds what the sensor saw; leave out the space, or choose TIFF"),
+            (_, PictureSpace::Raw) => Some("it is no raw file; choose DNG"),
             (Self::Tiff, _) => None,
             (Self::Exr, PictureSpace::Rgb(rgb)) => (rgb.curve != TransferCurve::Linear)
                 .then_some("its numbers are linear; choose the `-linear` variant of the space"),
@@ -170,7 +179,7 @@ pub(crate) fn same_colours(a: &RgbSpace, b: &RgbSpace) -> bool {
 pub(crate) fn profile_of(space: &PictureSpace) -> Vec<u8> {
     match space {
         PictureSpace::Rgb(space) => crate::icc::profile(space),
-        PictureSpace::Camera => Vec::new(),
+        PictureSpace::Camera | PictureSpace::Raw => Vec::new(),
     }
 }
 
@@ -254,6 +263,7 @@ mod tests {
         for format in Format::ALL {
             let accepted = format.accepts(&PictureSpace::Camera).is_ok();
             assert_eq!(accepted, matches!(format, Format::Tiff | Format::Exr), "{format}");
+            assert_eq!(format.accepts(&PictureSpace::Raw).is_ok(), format == Format::Dng, "{format}");
         }
     }
 

@@ -7,6 +7,7 @@
 //! | TIFF | 8, 16, 32 (float) | any, also camera RGB | none or deflate |
 //! | WebP | 8 | any with an ICC profile | lossless or lossy |
 //! | AVIF | 8 (stored as 10) | any, by numbers or ICC profile | lossy |
+//! | DNG | 16 | camera RGB for raw developers | lossless |
 //! | OpenEXR | 32 (float) | linear ones, also camera RGB | PIZ, lossless |
 //! | JPEG XL | 8, 16 | all but those with a ROMM or L\* curve | lossless |
 //!
@@ -55,9 +56,14 @@ pub use sample::Sample;
 
 pub use output::Out;
 
+pub mod dng;
+pub use dng::Dng;
+
+pub mod bits;
 pub mod exif;
 pub mod icc;
 pub mod iptc;
+pub mod ljpeg;
 
 pub mod tiff_field;
 
@@ -98,7 +104,7 @@ pub fn write(
     let frame = format::Frame::of(picture, format)?;
     let about = exif::of_picture(metadata, picture.size, &picture.space, format);
     match format {
-        Format::Jpeg | Format::Png | Format::Tiff => {
+        Format::Jpeg | Format::Png | Format::Tiff | Format::Dng => {
             InBands { picture, format, options, metadata, out }.with_all(&picture.samples)
         }
         Format::Webp => output::buffered(out, |out| webp::write(&frame, options, &about, out)),
@@ -189,6 +195,7 @@ mod tests {
                 };
                 (None, file.windows(block.len()).find(|w| *w == block).map(<[u8]>::to_vec))
             }
+            Format::Dng => (None, Some(file.into_inner().to_vec())),
             Format::Exr => (None, None),
         }
     }

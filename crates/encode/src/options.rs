@@ -1,6 +1,8 @@
 //! Settings of the encoders.
 
-use crate::Error;
+use std::sync::Arc;
+
+use crate::{Dng, Error};
 
 /// How JPEG stores the two colour differences.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,7 +38,7 @@ pub enum WebpKind {
 }
 
 /// Settings of the encoders. Each format takes note of its own only.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// Quality of JPEG, AVIF and lossy WebP, 1 (smallest file) to 100 (best picture). The two scales are not the same: AVIF
     /// looks good at lower numbers.
@@ -52,6 +54,8 @@ pub struct Options {
     /// How little time AVIF may take, 1 (smallest file) to 10 (fastest). On two cores a picture of 24 megapixels
     /// takes about 30 s at 8, 15 s at 9 and 9 s at 10, where its file is some 7 % larger.
     pub avif_speed: u8,
+    /// What a DNG states beside its samples.
+    pub dng: Arc<Dng>,
 }
 
 impl Default for Options {
@@ -64,6 +68,7 @@ impl Default for Options {
             compression: TiffCompression::default(),
             webp: WebpKind::default(),
             avif_speed: 10,
+            dng: Arc::default(),
         }
     }
 }

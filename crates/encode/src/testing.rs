@@ -45,8 +45,12 @@ pub(crate) fn picture(width: usize, height: usize, bits: u8, space: PictureSpace
 
 /// A picture that the format accepts, with its default bits.
 pub(crate) fn picture_for(format: Format, width: usize, height: usize) -> Picture {
-    let space = if format == Format::Exr { RgbSpace::SRGB.linear() } else { RgbSpace::SRGB };
-    picture(width, height, format.default_bits(), PictureSpace::Rgb(space))
+    let space = match format {
+        Format::Dng => PictureSpace::Raw,
+        Format::Exr => PictureSpace::Rgb(RgbSpace::SRGB.linear()),
+        _ => PictureSpace::Rgb(RgbSpace::SRGB),
+    };
+    picture(width, height, format.default_bits(), space)
 }
 
 /// Fields of every type in every directory.
@@ -97,6 +101,7 @@ pub(crate) fn decoded(format: Format, file: &[u8]) -> (Size, Samples) {
         Format::Webp => decoded_by_image(image::ImageFormat::WebP, file),
         Format::Exr => decoded_by_exr(file),
         Format::Jxl => decoded_by_jxl_oxide(file),
+        Format::Dng => decoded_by_flashraw(file),
         Format::Avif => panic!("no decoder of AV1"),
     }
 }
@@ -133,6 +138,14 @@ fn decoded_by_exr(file: &[u8]) -> (Size, Samples) {
     let size = image.layer_data.size;
     let samples = image.layer_data.channel_data.pixels.1;
     (Size { width: size.width(), height: size.height() }, Samples::F32(samples))
+}
+
+fn decoded_by_flashraw(file: &[u8]) -> (Size, Samples) {
+    use flashraw::{DecodeOptions, FlashRaw, OutputFormat};
+    let options = DecodeOptions { output: OutputFormat::RawU16, ..DecodeOptions::default() };
+    let frame = FlashRaw::open(file.to_vec()).unwrap().decode(options).unwrap();
+    let size = Size { width: frame.width as usize, height: frame.height as usize };
+    (size, Samples::U16(frame.as_u16().unwrap().to_vec()))
 }
 
 fn decoded_by_jxl_oxide(file: &[u8]) -> (Size, Samples) {

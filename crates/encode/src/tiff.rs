@@ -82,15 +82,7 @@ fn begun<'a, W: Write + Seek, K: TiffKind>(
     metadata: &Metadata,
     bits: u8,
 ) -> TiffResult<DirectoryEncoder<'a, W, K>> {
-    let mut pointers = Vec::new();
-    for (directory, pointer) in [(Directory::Exif, EXIF_DIRECTORY), (Directory::Gps, GPS_DIRECTORY)] {
-        if exif::fields(metadata).any(|field| field.directory == directory) {
-            let mut entries = file.extra_directory()?;
-            write_fields(&mut entries, metadata, directory)?;
-            pointers.push((pointer, entries.finish_with_offsets()?.offset));
-        }
-    }
-
+    let pointers = shot_directories(file, metadata)?;
     let mut entries = file.image_directory()?;
     let (compression, predictor) = match options.compression {
         TiffCompression::None => (CompressionMethod::None, Predictor::None),
@@ -122,12 +114,28 @@ fn begun<'a, W: Write + Seek, K: TiffKind>(
             let profile = profile_of(&outline.space);
             write_bytes(&mut entries, ICC_PROFILE, Type::UNDEFINED, &profile)?;
         }
-        PictureSpace::Camera => {
+        PictureSpace::Camera | PictureSpace::Raw => {
             let words = description_of_camera_rgb(metadata);
             write_bytes(&mut entries, IMAGE_DESCRIPTION, Type::ASCII, &closed(&words))?;
         }
     }
     Ok(entries)
+}
+
+/// Writes the fields of the shot that have directories of their own; what points at each, and where it is.
+pub(crate) fn shot_directories<W: Write + Seek, K: TiffKind>(
+    file: &mut TiffEncoder<W, K>,
+    metadata: &Metadata,
+) -> TiffResult<Vec<(u16, K::OffsetType)>> {
+    let mut pointers = Vec::new();
+    for (directory, pointer) in [(Directory::Exif, EXIF_DIRECTORY), (Directory::Gps, GPS_DIRECTORY)] {
+        if exif::fields(metadata).any(|field| field.directory == directory) {
+            let mut entries = file.extra_directory()?;
+            write_fields(&mut entries, metadata, directory)?;
+            pointers.push((pointer, entries.finish_with_offsets()?.offset));
+        }
+    }
+    Ok(pointers)
 }
 
 /// The bytes of a strip, in the order of the machine, which is that of the file.
@@ -188,7 +196,8 @@ fn description_of_camera_rgb(metadata: &Metadata) -> String {
     }
 }
 
-fn write_fields<W: Write + Seek, K: TiffKind>(
+/// Writes the fields of a directory.
+pub(crate) fn write_fields<W: Write + Seek, K: TiffKind>(
     entries: &mut DirectoryEncoder<'_, W, K>,
     metadata: &Metadata,
     directory: Directory,
@@ -213,7 +222,7 @@ fn write_fields<W: Write + Seek, K: TiffKind>(
 }
 
 /// Writes a value in the byte order of the machine, which is that of the file.
-fn write_bytes<W: Write + Seek, K: TiffKind>(
+pub(crate) fn write_bytes<W: Write + Seek, K: TiffKind>(
     entries: &mut DirectoryEncoder<'_, W, K>,
     tag: u16,
     kind: Type,
@@ -225,7 +234,7 @@ fn write_bytes<W: Write + Seek, K: TiffKind>(
 }
 
 /// Text with its closing zero.
-fn closed(text: &str) -> Vec<u8> {
+pub(crate) fn closed(text: &str) -> Vec<u8> {
     text.bytes().chain([0]).collect()
 }
 

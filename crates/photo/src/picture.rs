@@ -33,6 +33,9 @@ pub enum PictureSpace {
     Rgb(RgbSpace),
     /// Linear, balanced camera RGB before any profile: no ICC profile can describe it.
     Camera,
+    /// Linear camera RGB as the sensor has it, not balanced, for another raw developer: 0 is no light, 1 the level at which the
+    /// sensor is full.
+    Raw,
 }
 
 impl PictureSpace {
@@ -44,6 +47,7 @@ impl PictureSpace {
             }
             Self::Rgb(space) => space.name.to_owned(),
             Self::Camera => "camera RGB, linear".to_owned(),
+            Self::Raw => "camera RGB, linear, not balanced".to_owned(),
         }
     }
 }

@@ -5,8 +5,9 @@ use darkroot_photo::metadata::{Directory, Value};
 use darkroot_photo::{AsShot, BlackLevel, Calibration, Capture, Cfa, Counts, Filter, Layout, Rect};
 
 use crate::preview::preview;
+use crate::tag;
 use crate::tiff_writer::{Ifd, file};
-use crate::{ljpeg, tag};
+use darkroot_encode::ljpeg;
 
 /// How the samples are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

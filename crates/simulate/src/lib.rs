@@ -28,9 +28,7 @@ pub mod nef;
 pub mod levels;
 pub mod samples;
 
-mod bits;
 mod exact;
-mod ljpeg;
 mod nef_huffman;
 mod preview;
 mod random;

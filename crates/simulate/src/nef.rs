@@ -5,10 +5,10 @@
 use darkroot_photo::metadata::Value;
 use darkroot_photo::{AsShot, Capture, Cfa, Counts, Layout, Mosaic};
 
-use crate::bits::Bits;
 use crate::dng::{code, exif_directory, preview_directory};
 use crate::tiff_writer::{Ifd, file};
 use crate::{nef_huffman, tag};
+use darkroot_encode::bits::Bits;
 
 /// How the samples are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

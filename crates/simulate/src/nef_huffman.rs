@@ -2,7 +2,7 @@
 //! format. The lossy kinds store steps of a curve in place of samples; the later one drops the last bits of large
 //! differences below a row.
 
-use crate::bits::{Bits, category};
+use darkroot_encode::bits::{Bits, category};
 
 /// A tree: numbers of codes of 1, 2, 3, ... bits, and their symbols in order. The low half of a symbol is the number of bits
 /// of a difference, the high half how many of them are dropped.

@@ -51,7 +51,7 @@ pub(crate) fn for_screen(picture: Picture, gamut: Gamut) -> Picture {
     // Camera RGB has no colours yet: it is shown as if it were the screen's own.
     let matrix = match picture.space {
         PictureSpace::Rgb(from) => to.from_xyz_under(white::D65) * from.to_xyz_under(white::D65),
-        PictureSpace::Camera => darkroot_colour::Matrix3::identity(),
+        PictureSpace::Camera | PictureSpace::Raw => darkroot_colour::Matrix3::identity(),
     };
     let bent = samples.chunks_exact(3).flat_map(|rgb| {
         let light = matrix * Vector3::new(rgb[0].into(), rgb[1].into(), rgb[2].into());

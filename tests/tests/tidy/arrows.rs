@@ -18,7 +18,7 @@ const ARROWS: [(&str, &[&str]); 17] = [
     ("raw", &["colour", "photo"]),
     ("encode", &["colour", "photo"]),
     ("chart", &["colour", "photo"]),
-    ("simulate", &["colour", "photo"]),
+    ("simulate", &["colour", "encode", "photo"]),
     ("develop", &["colour", "lens", "photo", "profile"]),
     ("calibrate", &["chart", "colour", "photo", "profile"]),
     ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "lens", "photo", "profile", "raw"]),

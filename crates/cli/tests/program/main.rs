@@ -16,6 +16,7 @@ mod geometry;
 mod help;
 mod hostile;
 mod inspect;
+mod linear_dng;
 mod looks;
 mod luts;
 mod metadata;

@@ -22,7 +22,7 @@ fn without_options_the_picture_lies_beside_its_raw_file_as_a_jpeg() {
 #[test]
 fn the_ending_of_the_output_chooses_the_format() {
     let desk = Desk::with_dng();
-    let starts: [(&str, &[u8]); 9] = [
+    let starts: [(&str, &[u8]); 10] = [
         ("o.jpg", &[0xff, 0xd8]),
         ("o.JPEG", &[0xff, 0xd8]),
         ("o.png", b"\x89PNG"),
@@ -32,6 +32,7 @@ fn the_ending_of_the_output_chooses_the_format() {
         ("o.avif", b"\0\0\0"),
         ("o.exr", &[0x76, 0x2f, 0x31, 0x01]),
         ("o.jxl", &[]),
+        ("o.dng", b"II*\0"),
     ];
     for (name, start) in starts {
         desk.develop(&["a.dng", "-o", name]);
@@ -262,7 +263,7 @@ fn a_name_that_is_no_utf_8_is_reported_as_well_as_json_can() {
 #[test]
 fn the_same_file_developed_twice_is_the_same_to_the_byte() {
     let desk = Desk::with_dng();
-    for ending in ["jpg", "png", "tif", "webp", "avif", "exr", "jxl"] {
+    for ending in ["jpg", "png", "tif", "webp", "avif", "exr", "jxl", "dng"] {
         let (one, two) = (format!("1.{ending}"), format!("2.{ending}"));
         desk.develop(&["a.dng", "-o", &one, "--threads", "1"]);
         desk.develop(&["a.dng", "-o", &two, "--threads", "3"]);

@@ -18,7 +18,7 @@ fn on_a_small_disk(desk: &Desk, blocks: usize, arguments: &[&str]) -> Run {
 
 #[test]
 fn a_disk_that_fills_up_leaves_nothing_half_written() {
-    for ending in ["jpg", "png", "tif", "webp", "exr", "jxl", "avif"] {
+    for ending in ["jpg", "png", "tif", "webp", "exr", "jxl", "avif", "dng"] {
         let desk = Desk::new();
         let name = format!("o.{ending}");
         let path = sample("still-life.dng");

@@ -223,7 +223,7 @@ fn space(request: &ExportRequest, usual: RgbSpace) -> Result<RgbSpace, ExportErr
     match request.space {
         None => Ok(usual),
         Some(OutputSpace::Rgb(space)) => Ok(space),
-        Some(OutputSpace::Camera) => Err(ExportError::IntoCamera),
+        Some(OutputSpace::Camera | OutputSpace::Raw) => Err(ExportError::IntoCamera),
     }
 }
 

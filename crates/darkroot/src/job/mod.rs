@@ -5,9 +5,10 @@ mod report;
 
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
-use darkroot_develop::{Bits, Cancel, Cancelled, Look, OutputSpace, Plan, Recipe, Scale};
+use darkroot_develop::{Analysis, Bits, Cancel, Cancelled, Look, OutputSpace, Plan, Recipe, Scale};
 use darkroot_encode::{Format, Outline};
 use darkroot_photo::{Capture, Metadata, Picture};
 
@@ -17,7 +18,7 @@ use crate::metadata::{About, of_picture};
 use crate::photo::Photo;
 use crate::settings::{Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
-use crate::{Error, Job, from_chart, lut, provenance};
+use crate::{Error, Job, dng, from_chart, lut, provenance};
 
 pub use decoded::opened;
 use decoded::{Decoded, decoded};
@@ -105,6 +106,10 @@ pub fn develop_into(
     let mut recipe =
         settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
     recipe.lut = lut::Last::default().of(settings)?;
+    let (asked, mut encode) = (recipe.clone(), settings.encode.clone());
+    if format == Format::Dng {
+        recipe = dng::samples(&asked);
+    }
     let Decoded { photo, told, hash } = decoded(input, read, settings, store, &recipe)?;
 
     control.step(Step::Develop);
@@ -114,7 +119,21 @@ pub fn develop_into(
     let (mut report, metadata, picture) = match settings.engine {
         Engine::Darkroot => {
             let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
-            let (plan, report) = plan(input, &photo, chosen.as_ref(), settings, &recipe, told.as_ref())?;
+            let analysis = photo.analyse_as_asked();
+            let planned =
+                |recipe| plan(input, (&photo, &analysis), chosen.as_ref(), settings, recipe, told.as_ref());
+            let (plan, report) = planned(&recipe)?;
+            if format == Format::Dng {
+                let (shown, _) = planned(&dng::shown(&asked))?;
+                let preview = shown
+                    .render(shown.whole(Scale::to_show(shown.size(), dng::PREVIEW)), cancel)
+                    .map_err(|Cancelled| Error::Cancelled { path: input.clone() })?;
+                if let Some(seen) = control.seen.take() {
+                    seen(&preview);
+                }
+                let facts = dng::facts(input, photo.capture(), &plan, preview);
+                encode.dng = Arc::new(facts.map_err(|source| Error::Dng { path: input.clone(), source })?);
+            }
             let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
             let dpi = settings.dpi.or(by_chart);
             let mut origin = Vec::new();
@@ -127,6 +146,7 @@ pub fn develop_into(
             }
             let metadata = of_picture(photo.capture(), dpi, &settings.about, &origin);
             drop(chosen);
+            drop(analysis);
             drop(photo);
             if format.takes_bands() && control.seen.is_none() {
                 let write = match recipe.output.bits {
@@ -134,7 +154,7 @@ pub fn develop_into(
                     Bits::Sixteen => write_in_bands::<u16>,
                     Bits::Float => write_in_bands::<f32>,
                 };
-                write(to, job, settings, format, &metadata, &plan, cancel)?;
+                write(to, job, settings, (format, &encode), &metadata, &plan, cancel)?;
                 notes.extend(report::clipped(&plan));
                 (report, metadata, None)
             } else {
@@ -157,7 +177,7 @@ pub fn develop_into(
             seen(&picture);
         }
         write_file(to, job, settings, |out| {
-            Ok(darkroot_encode::write(&picture, format, &settings.encode, &metadata, out)?)
+            Ok(darkroot_encode::write(&picture, format, &encode, &metadata, out)?)
         })?;
     }
     notes.append(&mut report.notes);
@@ -195,14 +215,14 @@ fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sampl
     to: Output,
     job: &Job,
     settings: &Settings,
-    format: Format,
+    (format, encode): (Format, &darkroot_encode::Options),
     metadata: &Metadata,
     plan: &Plan,
     cancel: &Cancel,
 ) -> Result<(), Error> {
     let outline = Outline { size: plan.size(), space: plan.picture_space() };
     write_file(to, job, settings, |out| {
-        darkroot_encode::write_in_bands(&outline, format, &settings.encode, metadata, out, |rows, take| {
+        darkroot_encode::write_in_bands(&outline, format, encode, metadata, out, |rows, take| {
             plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[T]| {
                 Ok(take(band, samples)?)
             })
@@ -252,7 +272,7 @@ fn format_of(output: &Path, settings: &Settings) -> Format {
 /// The plan of a job, and what it says of the picture.
 fn plan(
     input: &Path,
-    photo: &Photo,
+    (photo, analysis): (&Photo, &Analysis),
     chosen: Option<&ChosenProfile<'_>>,
     settings: &Settings,
     recipe: &Recipe,
@@ -266,9 +286,8 @@ fn plan(
             recipe.balance = told.balance(None);
         }
     }
-    let analysis = photo.analyse_as_asked();
     let planned = |recipe: &Recipe| {
-        let plan = photo.plan_with(&analysis, profile, recipe.clone());
+        let plan = photo.plan_with(analysis, profile, recipe.clone());
         plan.map_err(|source| Error::Plan { path: input.to_owned(), source })
     };
     let mut plan = planned(&recipe)?;

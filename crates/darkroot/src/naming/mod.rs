@@ -115,7 +115,7 @@ pub enum NamingError {
     },
     /// The ending names no format.
     #[error(
-        "{path}: its ending names no picture format; use .jpg .png .tif .webp .avif .exr or .jxl",
+        "{path}: its ending names no picture format; use .jpg .png .tif .webp .avif .exr .jxl or .dng",
         path = shown(path)
     )]
     Format {

@@ -22,6 +22,7 @@ pub(super) fn preview(settings: &Settings, recipe: &Recipe) -> Result<(), Settin
     let asks = [
         ("look", matches!(recipe.look, Look::Reproduction | Look::Linear | Look::Camera)),
         ("space", recipe.output.space == OutputSpace::Camera),
+        ("format (DNG)", recipe.output.space == OutputSpace::Raw),
         ("profile", matches!(settings.profile, ProfileChoice::File(_))),
         ("engine", settings.engine == Engine::Imagepipe),
         ("dark", settings.dark.is_some()),

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use darkroot_develop::Resize;
+use darkroot_develop::{OutputSpace, Resize};
 
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
@@ -53,7 +53,7 @@ impl FromChart {
 }
 
 /// What of a chart cannot be had like that.
-pub(super) fn check(settings: &Settings, camera_output: bool) -> Result<(), SettingsError> {
+pub(super) fn check(settings: &Settings, space: OutputSpace) -> Result<(), SettingsError> {
     let chart = &settings.chart;
     let of_chart =
         [("white-balance", chart.balance), ("black-from-chart", chart.black), ("dpi", chart.pitch.is_some())];
@@ -67,7 +67,9 @@ pub(super) fn check(settings: &Settings, camera_output: bool) -> Result<(), Sett
     let is_scaled = geometry.resize != Resize::default() || geometry.perspective.is_some();
     let other = [
         ("dpi", chart.pitch.is_some() && is_scaled),
-        ("space", camera_output),
+        ("space", space == OutputSpace::Camera),
+        // Samples of the sensor keep their stray light.
+        ("black-from-chart", space == OutputSpace::Raw && chart.black),
         ("auto-exposure", settings.recipe.exposure.auto),
         ("from-preview", settings.from_preview),
     ];

@@ -141,11 +141,12 @@ impl Settings {
         recipe.geometry.keep_vignetting |= self.flat.is_some();
         let linear = recipe.look == Look::Linear;
         let srgb = RgbSpace::SRGB;
-        recipe.output.space = self.space.unwrap_or(OutputSpace::Rgb(match format {
-            Format::Exr => srgb.linear(),
-            _ if linear => srgb.linear(),
-            _ => srgb,
-        }));
+        recipe.output.space = self.space.unwrap_or(match format {
+            Format::Dng => OutputSpace::Raw,
+            Format::Exr => OutputSpace::Rgb(srgb.linear()),
+            _ if linear => OutputSpace::Rgb(srgb.linear()),
+            _ => OutputSpace::Rgb(srgb),
+        });
         let camera = recipe.output.space == OutputSpace::Camera;
         let default_bits = if camera { 32 } else { format.default_bits() };
         recipe.output.bits = self.bits.unwrap_or(match default_bits {
@@ -161,7 +162,7 @@ impl Settings {
         if recipe.look == Look::Camera && recipe.tones.curve.is_some() {
             return Err(SettingsError::CurveOnCamera);
         }
-        from_chart::check(self, camera)?;
+        from_chart::check(self, recipe.output.space)?;
         if linear && bits == 8 {
             return Err(SettingsError::LinearInEightBits { format: format.name() });
         }
@@ -177,6 +178,7 @@ impl Settings {
                 PictureSpace::Rgb(space)
             }
             OutputSpace::Camera => PictureSpace::Camera,
+            OutputSpace::Raw => PictureSpace::Raw,
         };
         format.accepts(&space)?;
         if self.engine == Engine::Imagepipe {

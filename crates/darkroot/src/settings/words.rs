@@ -30,7 +30,7 @@ pub(super) const fn plain<T, const N: usize>(words: &[Word<T>; N]) -> [Word<()>;
 pub(super) const AUTO: &str = "auto";
 pub(super) const OFF: &str = "off";
 
-pub(super) const FORMATS: [Word<Option<Format>>; 8] = [
+pub(super) const FORMATS: [Word<Option<Format>>; 9] = [
     word(AUTO, None, "By the output's ending, else JPEG, or TIFF for reproductions and linear light"),
     either("jpeg", "jpg", Some(Format::Jpeg)),
     word("png", Some(Format::Png), ""),
@@ -39,6 +39,7 @@ pub(super) const FORMATS: [Word<Option<Format>>; 8] = [
     word("avif", Some(Format::Avif), ""),
     word("exr", Some(Format::Exr), ""),
     word("jxl", Some(Format::Jxl), ""),
+    word("dng", Some(Format::Dng), "Linear DNG: camera RGB without a look, for another raw developer"),
 ];
 pub(super) const BITS: [Word<Option<Bits>>; 4] = [
     word(AUTO, None, "What suits the format: 8, 16 in TIFF, 32 in OpenEXR"),

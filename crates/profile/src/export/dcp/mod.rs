@@ -75,7 +75,7 @@ impl Dcp {
         }
         let mut by_warmth = calibrations.to_vec();
         by_warmth.sort_by(|a, b| a.calibration.light.kelvin().total_cmp(&b.calibration.light.kelvin()));
-        let lights: Vec<DcpLight> = by_warmth.iter().map(light).collect::<Result<_, _>>()?;
+        let lights: Vec<DcpLight> = by_warmth.iter().map(DcpLight::of).collect::<Result<_, _>>()?;
         if let [one, two] = &lights[..]
             && one.illuminant == two.illuminant
         {
@@ -107,6 +107,27 @@ impl Dcp {
 }
 
 impl DcpLight {
+    /// What a DCP says of a calibration.
+    ///
+    /// # Errors
+    /// A model that depends on exposure, a neutral that is none, a matrix without inverse.
+    pub fn of(of: &WithNeutral<'_>) -> Result<Self, Error> {
+        let WithNeutral { calibration: Calibration { light, model, .. }, neutral } = of;
+        if !model.is_exposure_invariant() {
+            return Err(DcpLimit::ChangesWithExposure.into());
+        }
+        if !neutral.iter().all(|v| *v > 0.0 && v.is_finite()) {
+            return Err(DcpLimit::Neutral.into());
+        }
+        let forward = file::rounded(&near_grey(model));
+        let inverse = forward.try_inverse().ok_or(DcpLimit::NoInverse)?;
+        let largest = neutral.iter().copied().fold(0.0, f64::max);
+        let unbalance = Matrix3::from_diagonal(&(Vector3::from(*neutral) / largest));
+        let color_matrix = unbalance * inverse * bradford(light.xy.xyz(), white::D50);
+        let map = HueSatMap::of(model, &forward).ok_or(DcpLimit::NoInverse)?;
+        Ok(Self { illuminant: illuminant(light), color_matrix, forward_matrix: forward, map })
+    }
+
     /// XYZ relative to D50 of balanced camera RGB.
     pub fn xyz(&self, rgb: [f64; 3]) -> Xyz {
         let to_prophoto = RgbSpace::PROPHOTO.from_xyz_under(white::D50);
@@ -114,23 +135,6 @@ impl DcpLight {
         let corrected = Vector3::from(self.map.apply(prophoto.into()));
         (RgbSpace::PROPHOTO.to_xyz_under(white::D50) * corrected).into()
     }
-}
-
-fn light(of: &WithNeutral<'_>) -> Result<DcpLight, Error> {
-    let WithNeutral { calibration: Calibration { light, model, .. }, neutral } = of;
-    if !model.is_exposure_invariant() {
-        return Err(DcpLimit::ChangesWithExposure.into());
-    }
-    if !neutral.iter().all(|v| *v > 0.0 && v.is_finite()) {
-        return Err(DcpLimit::Neutral.into());
-    }
-    let forward = file::rounded(&near_grey(model));
-    let inverse = forward.try_inverse().ok_or(DcpLimit::NoInverse)?;
-    let largest = neutral.iter().copied().fold(0.0, f64::max);
-    let unbalance = Matrix3::from_diagonal(&(Vector3::from(*neutral) / largest));
-    let color_matrix = unbalance * inverse * bradford(light.xy.xyz(), white::D50);
-    let map = HueSatMap::of(model, &forward).ok_or(DcpLimit::NoInverse)?;
-    Ok(DcpLight { illuminant: illuminant(light), color_matrix, forward_matrix: forward, map })
 }
 
 /// The matrix that a model is near grey, its rows scaled so that (1,1,1) gives D50: for homogeneous models that are

@@ -1,8 +1,8 @@
 //! Writing numbers of any width, most significant bit first.
 
 /// Bytes being filled from the top bit down.
-#[derive(Debug, Default)]
-pub(crate) struct Bits {
+#[derive(Debug, Clone, Default)]
+pub struct Bits {
     bytes: Vec<u8>,
     pending: u64,
     count: u32,
@@ -10,7 +10,7 @@ pub(crate) struct Bits {
 
 impl Bits {
     /// Appends the low `width` bits of `value`; `width` is at most 32.
-    pub(crate) fn push(&mut self, value: u32, width: u32) {
+    pub fn push(&mut self, value: u32, width: u32) {
         let mask = (1u64 << width) - 1;
         self.pending = (self.pending << width) | (u64::from(value) & mask);
         self.count += width;
@@ -21,7 +21,7 @@ impl Bits {
     }
 
     /// The bytes, the last one filled up with `fill` bits.
-    pub(crate) fn finish(mut self, fill: bool) -> Vec<u8> {
+    pub fn finish(mut self, fill: bool) -> Vec<u8> {
         let rest = (8 - self.count % 8) % 8;
         self.push(if fill { u32::MAX } else { 0 }, rest);
         self.bytes
@@ -30,7 +30,7 @@ impl Bits {
 
 /// Category and extra bits of a prediction error, as JPEG codes it (ITU-T T.81, F.1.2.1 and H.1.2.2): the number
 /// of bits of its size, and those bits, of the error less 1 when it is negative.
-pub(crate) fn category(error: i32) -> (u8, u32) {
+pub fn category(error: i32) -> (u8, u32) {
     let bits = 32 - error.unsigned_abs().leading_zeros();
     let extra = if error < 0 { (error - 1) as u32 } else { error as u32 };
     (bits as u8, extra & ((1 << bits) - 1))

@@ -11,7 +11,7 @@ const MAX_LENGTH: usize = 16;
 /// Encodes `rows` rows of `row_length` samples, each row of interleaved groups of `components` (1..=4, divides
 /// `row_length`). Every sample must fit in `bits` (2..=16). Samples are predicted from the one on the left of
 /// the same component.
-pub(crate) fn encode(samples: &[u16], row_length: usize, components: usize, bits: u8) -> Vec<u8> {
+pub fn encode(samples: &[u16], row_length: usize, components: usize, bits: u8) -> Vec<u8> {
     let row_length = row_length.max(1); // An empty picture has no rows.
     let rows = samples.len() / row_length;
     let errors = prediction_errors(samples, row_length, components, bits);
