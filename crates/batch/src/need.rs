@@ -54,11 +54,14 @@ pub(crate) fn develop(
         return WORKER + THREAD + decode.max(counts + noise + 4 * picture);
     }
     if format.takes_bands() && settings.engine == Engine::Darkroot {
-        // A few bands of rows, and what they became.
-        return WORKER + THREAD + decode.max(counts + noise + picture / 16);
+        // A few bands of rows, and what they became; two small pictures for a gain map.
+        let small = if settings.hdr > 0.0 { 2 * pixels } else { 0 };
+        return WORKER + THREAD + decode.max(counts + noise + picture / 16 + small);
     }
-    let render = counts + noise + picture;
-    let encode = picture + encoder(format, bits, picture, pixels);
+    // Floating point, and what becomes of it, in place of bytes.
+    let absolute = if settings.hdr > 0.0 { 18 * pixels } else { 0 };
+    let render = counts + noise + picture.max(absolute);
+    let encode = absolute + picture + encoder(format, bits, picture, pixels);
     WORKER + THREAD + decode.max(render).max(encode)
 }
 

@@ -16,7 +16,7 @@ const INSTEAD: [(&[&str], &str, &str); 11] = [
         "resize",
         "`--resize` takes long:2048, 1920x1080, 50% and more",
     ),
-    (&["angle", "horizon"], "straighten", "`--straighten` takes degrees"),
+    (&["angle", "horizon"], "straighten", "`--straighten` takes degrees, or auto"),
     (&["aspect", "ratio"], "crop", "`--crop` takes 3:2, 80% or X,Y,WIDTH,HEIGHT"),
     (&["sharpness", "sharpening"], "sharpen", "`--sharpen` takes auto, off, or a number from 0 to 2"),
     (&["noise", "noise-reduction", "nr"], "denoise", "`--denoise` takes auto, off, or a number from 0 to 2"),

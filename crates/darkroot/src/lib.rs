@@ -42,6 +42,7 @@ pub mod lut;
 
 mod dng;
 mod from_chart;
+mod hdr;
 mod provenance;
 
 pub mod inspect;
@@ -98,6 +99,7 @@ pub use make_profile::{ChartRequest, MadeProfile, make_profile};
 
 pub mod metadata;
 
+mod lean;
 mod lens;
 mod shown;
 pub use shown::{json_lines, lines, quoted, shown};

@@ -17,6 +17,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use darkroot_develop::camera_look::{self, CameraLook, NoCameraLook};
+use darkroot_develop::tilt::Tilt;
 use darkroot_develop::{Analysis, Balance, CameraMatrix, Lens, Look, Plan, Recipe, Whites};
 use darkroot_photo::{Capture, Layout, Picture};
 use darkroot_profile::Profile;
@@ -25,7 +26,7 @@ use darkroot_raw::{Decoder, Limits};
 use crate::estimate::Estimated;
 use crate::settings::{ChartShot, Engine, ProfileChoice, Settings, SettingsError};
 use crate::store::{ChosenProfile, ProfileStore};
-use crate::{frames, lens, lut};
+use crate::{frames, lean, lens, lut};
 
 /// A decoded raw file.
 #[derive(Debug, Clone)]
@@ -34,6 +35,8 @@ pub struct Photo {
     /// The camera as far as its matrix tells; made when it is first wanted.
     estimated: Arc<OnceLock<Option<Estimated>>>,
     lut: lut::Last,
+    /// How far the picture leans; looked for when it is first wanted.
+    tilt: Arc<OnceLock<Option<Tilt>>>,
     /// A small picture of what the camera rendered, where that was asked for.
     pub(crate) rendered: Option<Arc<Picture>>,
 }
@@ -209,6 +212,14 @@ impl Photo {
         let asked = recipe.geometry.lens == Lens::Lensfun && !self.capture.rendered;
         let (known, note) = asked.then(|| lens::known(&self.capture)).flatten().unzip();
         recipe.geometry.known = known.flatten();
+        let lean = match (recipe.geometry.auto_straighten, self.tilt.get()) {
+            (false, _) => None,
+            (true, Some(found)) => Some(lean::straighten(&mut recipe, *found)),
+            (true, None) => {
+                let found = lean::leaning(analysis, profile, &recipe.geometry)?;
+                Some(lean::straighten(&mut recipe, *self.tilt.get_or_init(|| found)))
+            }
+        };
         let look = match recipe.look {
             Look::Camera if !self.capture.rendered => Some(self.camera_look(analysis, profile)?),
             _ => None,
@@ -218,6 +229,7 @@ impl Photo {
         }
         let mut plan = darkroot_develop::plan(analysis, profile, &recipe)?;
         plan.notes.extend(note);
+        plan.notes.extend(lean);
         plan.notes.extend(look.map(|look| {
             format!(
                 "the look is that of the embedded preview, as {} would make it (median difference {:.1} L*)",
@@ -294,6 +306,7 @@ impl From<Capture> for Photo {
         Self {
             capture: Arc::new(capture),
             estimated: Arc::default(),
+            tilt: Arc::default(),
             lut: lut::Last::default(),
             rendered: None,
         }

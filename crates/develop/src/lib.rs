@@ -71,6 +71,7 @@ pub mod lateral;
 mod neutral;
 mod render;
 mod tile;
+pub mod tilt;
 
 // The stages, in the order of the pipeline.
 pub mod balance;

@@ -138,7 +138,10 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let measuring = linear || camera_output && !raw_output;
     // Neither noise nor blur of the original's picture is anybody's to take away unasked.
     let as_it_is = measuring || reproduced;
-    let laid = lay(capture, recipe.crop, &recipe.geometry, measuring)?;
+    let usual_sharpening = if as_it_is || raw_output { 0.0 } else { 1.0 };
+    let sharpening = recipe.sharpen.unwrap_or(usual_sharpening);
+    let geometry = Geometry { sharpening, ..recipe.geometry };
+    let laid = lay(capture, recipe.crop, &geometry, measuring)?;
     let mut notes = Vec::new();
     let whites = whites(analysis, profile);
     let neutral = neutral::neutral(analysis, &whites, recipe.balance, &laid, &mut notes)?;
@@ -180,7 +183,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         mends,
         denoiser,
         lateral,
-        sharpener: sharpener(analysis, recipe.sharpen, as_it_is || raw_output, multipliers),
+        sharpener: sharpener(analysis, sharpening, multipliers),
         picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
         highlights: match recipe.highlights {
             _ if camera_output => Treatment::Keep,
@@ -257,14 +260,8 @@ const BLURS: RangeInclusive<f32> = 0.3..=0.9;
 /// Blur of a picture that does not tell its own.
 const USUAL_BLUR: f32 = 0.4;
 
-/// What sharpens the picture: as much as is asked for, or as suits the look.
-fn sharpener(
-    analysis: &Analysis,
-    asked: Option<f32>,
-    measuring: bool,
-    multipliers: [f32; 3],
-) -> Option<Sharpener> {
-    let amount = asked.unwrap_or(if measuring { 0.0 } else { 1.0 });
+/// What sharpens the picture.
+fn sharpener(analysis: &Analysis, amount: f32, multipliers: [f32; 3]) -> Option<Sharpener> {
     if analysis.capture().rendered || amount <= 0.0 {
         return None;
     }

@@ -19,6 +19,7 @@ use adjust::Table;
 
 mod adjust;
 pub use adjust::Tones;
+mod headroom;
 mod points;
 pub use points::{Points, PointsError};
 

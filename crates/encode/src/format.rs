@@ -5,7 +5,7 @@ use std::fmt;
 use darkroot_colour::{RgbSpace, TransferCurve};
 use darkroot_photo::{Picture, PictureSpace, Samples, Size};
 
-use crate::Error;
+use crate::{Error, Options};
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -198,9 +198,11 @@ pub(crate) struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// Checks `picture` against `format`, all but its space.
-    pub(crate) fn of(picture: &'a Picture, format: Format) -> Result<Self, Error> {
+    pub(crate) fn of(picture: &'a Picture, format: Format, options: &Options) -> Result<Self, Error> {
         let Picture { size, samples, space } = picture;
-        let (width, height) = format.sides(*size, samples.bits())?;
+        let is_absolute = format == Format::Avif && options.peak.is_some() && samples.bits() == 32;
+        let bits = if is_absolute { format.default_bits() } else { samples.bits() };
+        let (width, height) = format.sides(*size, bits)?;
         let count = match samples {
             Samples::U8(v) => v.len(),
             Samples::U16(v) => v.len(),

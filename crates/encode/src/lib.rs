@@ -73,6 +73,7 @@ pub use source_profile::{ProfileFault, SourceProfile};
 mod avif;
 mod exr;
 mod jpeg;
+pub use jpeg::gain_map::{self, GainMap};
 mod jxl;
 mod output;
 mod png;
@@ -101,7 +102,7 @@ pub fn write(
 ) -> Result<(), Error> {
     format.accepts(&picture.space)?;
     options.check()?;
-    let frame = format::Frame::of(picture, format)?;
+    let frame = format::Frame::of(picture, format, options)?;
     let about = exif::of_picture(metadata, picture.size, &picture.space, format);
     match format {
         Format::Jpeg | Format::Png | Format::Tiff | Format::Dng => {

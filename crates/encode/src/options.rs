@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Dng, Error};
+use crate::{Dng, Error, GainMap};
 
 /// How JPEG stores the two colour differences.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,6 +54,11 @@ pub struct Options {
     /// How little time AVIF may take, 1 (smallest file) to 10 (fastest). On two cores a picture of 24 megapixels
     /// takes about 30 s at 8, 15 s at 9 and 9 s at 10, where its file is some 7 % larger.
     pub avif_speed: u8,
+    /// Light of the largest samples of an AVIF, cd/m²: the picture is then floating-point linear light of Rec. 2020, and the
+    /// file says absolute light (PQ).
+    pub peak: Option<f64>,
+    /// How much brighter a JPEG is on a screen with room above white.
+    pub gain_map: Option<Arc<GainMap>>,
     /// What a DNG states beside its samples.
     pub dng: Arc<Dng>,
 }
@@ -68,6 +73,8 @@ impl Default for Options {
             compression: TiffCompression::default(),
             webp: WebpKind::default(),
             avif_speed: 10,
+            peak: None,
+            gain_map: None,
             dng: Arc::default(),
         }
     }

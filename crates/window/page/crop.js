@@ -106,14 +106,14 @@ export class CropTool {
   }
 
   async #turn(by) {
-    const angle = Math.min(45, Math.max(-45, Number(this.#draft.text("straighten")) + by));
+    const angle = Math.min(45, Math.max(-45, (Number(this.#draft.text("straighten")) || 0) + by));
     this.#draft.set({ straighten: angle.toFixed(2).replace(/\.?0+$/, "") });
     this.#lay();
     await this.#measure();
   }
 
   #lay() {
-    this.angle.textContent = `${Number(this.#draft.text("straighten")).toFixed(1)}°`;
+    this.angle.textContent = `${(Number(this.#draft.text("straighten")) || 0).toFixed(1)}°`;
     if (!this.#box) return;
     const zoom = this.#picture.zoom;
     const { left, top } = this.#picture.sheet.style;
@@ -143,7 +143,7 @@ export class CropTool {
     const middle = [area.left + area.width / 2, area.top + area.height / 2];
     const direction = (e) => Math.atan2(e.clientY - middle[1], e.clientX - middle[0]);
     const from = direction(event);
-    const angle = Number(this.#draft.text("straighten"));
+    const angle = (Number(this.#draft.text("straighten")) || 0);
     const move = (e) => {
       const by = [(e.clientX - start[0]) / zoom, (e.clientY - start[1]) / zoom];
       if (handle !== undefined) this.#drag(box, HANDLES[handle], by);

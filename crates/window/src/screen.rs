@@ -30,6 +30,7 @@ impl Gamut {
 /// is not for a screen (the linear look, camera RGB) stays as it is; [`for_screen`] bends it.
 pub(crate) fn shown(mut settings: Settings, gamut: Gamut) -> Settings {
     settings.recipe.geometry.resize = darkroot_develop::Resize::None;
+    settings.hdr = 0.0;
     if settings.recipe.look == Look::Linear || settings.space == Some(OutputSpace::Camera) {
         settings.format = Some(Format::Exr);
         settings.bits = Some(Bits::Float);

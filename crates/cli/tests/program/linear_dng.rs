@@ -126,7 +126,7 @@ fn a_batch_makes_them_with_a_sheet() {
     let desk = Desk::new();
     desk.put("roll/a.dng", small_dng());
     desk.put("roll/b.nef", small_nef());
-    let run = desk.run(&["batch", "roll", "-o", "out", "--format", "dng", "--contact-sheet"]);
+    let run = desk.run(&["batch", "roll", "-o", "out", "--format", "dng", "--report", "sheet.html"]);
     assert_eq!(run.code, 0, "{}", run.err);
     for name in ["out/a.dng", "out/b.dng"] {
         assert_eq!(inspected(&desk, name)["filters"], "linear RGB");

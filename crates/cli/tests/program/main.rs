@@ -13,6 +13,7 @@ mod export;
 mod formats;
 mod frames;
 mod geometry;
+mod hdr;
 mod help;
 mod hostile;
 mod inspect;

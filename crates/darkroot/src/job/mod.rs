@@ -1,11 +1,11 @@
 //! Developing one file.
 
+mod beside;
 mod decoded;
 mod report;
 
 use std::io;
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
 use darkroot_develop::{Analysis, Bits, Cancel, Cancelled, Look, OutputSpace, Plan, Recipe, Scale};
@@ -18,8 +18,9 @@ use crate::metadata::{About, of_picture};
 use crate::photo::Photo;
 use crate::settings::{Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
-use crate::{Error, Job, dng, from_chart, lut, provenance};
+use crate::{Error, Job, dng, from_chart, hdr, lut, provenance};
 
+use beside::Beside;
 pub use decoded::opened;
 use decoded::{Decoded, decoded};
 pub use report::{Report, colours};
@@ -109,6 +110,8 @@ pub fn develop_into(
     let (asked, mut encode) = (recipe.clone(), settings.encode.clone());
     if format == Format::Dng {
         recipe = dng::samples(&asked);
+    } else if format == Format::Avif && settings.hdr > 0.0 {
+        recipe = hdr::absolute(&asked, settings.hdr);
     }
     let Decoded { photo, told, hash } = decoded(input, read, settings, store, &recipe)?;
 
@@ -120,19 +123,23 @@ pub fn develop_into(
         Engine::Darkroot => {
             let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
             let analysis = photo.analyse_as_asked();
-            let planned =
-                |recipe| plan(input, (&photo, &analysis), chosen.as_ref(), settings, recipe, told.as_ref());
+            let planned = |recipe: &Recipe| {
+                plan(input, (&photo, &analysis), chosen.as_ref(), settings, recipe, told.as_ref())
+            };
             let (plan, report) = planned(&recipe)?;
-            if format == Format::Dng {
-                let (shown, _) = planned(&dng::shown(&asked))?;
-                let preview = shown
-                    .render(shown.whole(Scale::to_show(shown.size(), dng::PREVIEW)), cancel)
-                    .map_err(|Cancelled| Error::Cancelled { path: input.clone() })?;
-                if let Some(seen) = control.seen.take() {
-                    seen(&preview);
-                }
-                let facts = dng::facts(input, photo.capture(), &plan, preview);
-                encode.dng = Arc::new(facts.map_err(|source| Error::Dng { path: input.clone(), source })?);
+            let beside = Beside {
+                input,
+                capture: photo.capture(),
+                settings,
+                format,
+                asked: &asked,
+                plan: &plan,
+                planned: &|recipe| Ok(planned(recipe)?.0),
+                cancel,
+            };
+            encode = beside.options(&mut notes)?;
+            if let Some(seen) = control.seen.take_if(|_| beside.is_for_no_screen()) {
+                seen(&beside.look()?);
             }
             let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
             let dpi = settings.dpi.or(by_chart);
@@ -182,6 +189,9 @@ pub fn develop_into(
     }
     notes.append(&mut report.notes);
     notes.dedup();
+    if encode.peak.is_some() {
+        report.space = hdr::SPACE.to_owned();
+    }
     Ok(Report {
         output: output.clone(),
         format: format.name().to_owned(),

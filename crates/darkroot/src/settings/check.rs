@@ -3,6 +3,8 @@
 use darkroot_colour::RgbSpace;
 use darkroot_develop::{Bits, Look, OutputSpace, Recipe};
 
+use darkroot_encode::Format;
+
 use super::tones::changed;
 use super::{ChartShot, Engine, ProfileChoice, Settings, SettingsError};
 
@@ -15,6 +17,28 @@ pub(super) fn tones(settings: &Settings, recipe: &Recipe, linear: bool) -> Resul
         Look::Reproduction => Err(SettingsError::TonesOnReproduction { settings }),
         _ => Ok(()),
     }
+}
+
+/// Light above white goes beside a JPEG or into an AVIF, by a look that bends highlights, which a table over it would not know.
+pub(super) fn hdr(settings: &Settings, recipe: &Recipe, format: Format) -> Result<(), SettingsError> {
+    let why = if settings.hdr <= 0.0 {
+        return Ok(());
+    } else if !matches!(format, Format::Jpeg | Format::Avif) {
+        "has a place in JPEG and AVIF only"
+    } else if format == Format::Avif
+        && settings.space.is_some_and(|s| s != OutputSpace::Rgb(RgbSpace::REC2020))
+    {
+        "is in Rec. 2020 in an AVIF, and in no other space"
+    } else if matches!(recipe.look, Look::Linear | Look::Reproduction) || settings.from_preview {
+        "needs a look with a tone curve"
+    } else if settings.lut.is_some() {
+        "and a table over the look do not go together"
+    } else if settings.engine == Engine::Imagepipe {
+        "is not known to imagepipe"
+    } else {
+        return Ok(());
+    };
+    Err(SettingsError::Hdr { why })
 }
 
 /// What is about the sensor's light has no meaning for a picture that the camera rendered.

@@ -69,6 +69,12 @@ pub enum SettingsError {
         /// Names of the settings that ask for it.
         settings: Vec<&'static str>,
     },
+    /// Light above white where it cannot be.
+    #[error("light above white {why}: leave out hdr")]
+    Hdr {
+        /// Why not.
+        why: &'static str,
+    },
     /// Options that the second engine does not have.
     #[error("imagepipe has its own fixed rendering in sRGB and does not heed {}", settings.join(", "))]
     Engine {

@@ -2,8 +2,8 @@
 
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
-use super::text::{number, one_of};
-use super::words::{CHROMA, COMPRESSION, SWITCH, WEBP, plain};
+use super::text::{NotAValue, number, one_of};
+use super::words::{CHROMA, COMPRESSION, OFF, SWITCH, WEBP, plain};
 
 pub(super) const QUALITY: Setting = Setting {
     name: "quality",
@@ -43,6 +43,30 @@ pub(super) const PROGRESSIVE: Setting = Setting {
     changes: Changes::Encoding,
     set: |to, text| put(&mut to.encode.progressive, one_of(&SWITCH, text)),
 };
+
+pub(super) const HDR: Setting = Setting {
+    name: "hdr",
+    alias: None,
+    noun: "number of stops",
+    kind: Kind::Text { form: "off, or stops from 0.5 to 4", example: "\"off\" or \"2\"" },
+    default: OFF,
+    group: Group::Output,
+    placeholder: "STOPS",
+    help: "Stops above white that screens with room for them show: off, or 0.5 to 4 (JPEG gets a gain map, Ultra HDR; \
+           AVIF is written in Rec. 2020 and PQ)",
+    changes: Changes::Encoding,
+    set: |to, text| put(&mut to.hdr, stops_above_white(text)),
+};
+
+fn stops_above_white(text: &str) -> Result<f32, NotAValue> {
+    if text == OFF {
+        return Ok(0.0);
+    }
+    let stops = number(text).ok().filter(|stops| (0.5..=4.0).contains(stops));
+    stops
+        .map(|stops| stops as f32)
+        .ok_or_else(|| NotAValue::plain(text, "number of stops", "off, or stops from 0.5 to 4"))
+}
 
 pub(super) const WEBP_KIND: Setting = Setting {
     name: "webp",

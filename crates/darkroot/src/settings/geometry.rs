@@ -55,13 +55,22 @@ pub(super) const STRAIGHTEN: Setting = Setting {
     name: "straighten",
     alias: None,
     noun: "angle",
-    kind: Kind::Number { least: -45.0, most: 45.0, whole: false, unit: "degrees" },
+    kind: Kind::Text { form: "auto, or degrees from -45 to 45", example: "\"auto\" or \"-1.5\"" },
     default: "0",
     group: Group::Picture,
     placeholder: "DEGREES",
-    help: "Degrees by which the picture is then turned clockwise and cut to what is whole, -45 to 45",
+    help: "Degrees by which the picture is then turned clockwise and cut to what is whole, -45 to 45; auto: what level and \
+           upright lines say, where they are sure",
     changes: Changes::Picture,
-    set: |to, text| put(&mut to.recipe.geometry.straighten, number(text)),
+    set: |to, text| {
+        let geometry = &mut to.recipe.geometry;
+        let degrees =
+            if text == AUTO { Some(0.0) } else { number(text).ok().filter(|d| (-45.0..=45.0).contains(d)) };
+        geometry.auto_straighten = text == AUTO;
+        geometry.straighten =
+            degrees.ok_or_else(|| NotAValue::plain(text, "angle", "auto, or degrees from -45 to 45"))?;
+        Ok(())
+    },
 };
 
 pub(super) const PERSPECTIVE: Setting = Setting {

@@ -90,6 +90,8 @@ pub struct Settings {
     pub chart: FromChart,
     /// What was asked for that is not the default, as texts by name: for the provenance of a reproduction.
     pub told: Vec<(&'static str, String)>,
+    /// Stops above white that are shown on screens with room for them; 0 for none.
+    pub hdr: f32,
     /// How files are written.
     pub encode: darkroot_encode::Options,
     /// The file of a table that is laid over the look.
@@ -163,6 +165,7 @@ impl Settings {
             return Err(SettingsError::CurveOnCamera);
         }
         from_chart::check(self, recipe.output.space)?;
+        check::hdr(self, &recipe, format)?;
         if linear && bits == 8 {
             return Err(SettingsError::LinearInEightBits { format: format.name() });
         }

@@ -4,7 +4,7 @@
 //! made from this table. A new setting takes a field of a recipe, the stage that heeds it, and a row here.
 
 use super::about::{ARTIST, COPYRIGHT, METADATA, SET_TAG};
-use super::files::{CHROMA_SUBSAMPLING, PROGRESSIVE, QUALITY, TIFF_COMPRESSION, WEBP_KIND};
+use super::files::{CHROMA_SUBSAMPLING, HDR, PROGRESSIVE, QUALITY, TIFF_COMPRESSION, WEBP_KIND};
 use super::frames::{DARK, FLAT};
 use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
 use super::geometry::{
@@ -27,7 +27,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 56] = [
+pub const SETTINGS: [Setting; 57] = [
     Setting {
         name: "format",
         alias: None,
@@ -73,6 +73,7 @@ pub const SETTINGS: [Setting; 56] = [
     QUALITY,
     CHROMA_SUBSAMPLING,
     PROGRESSIVE,
+    HDR,
     TIFF_COMPRESSION,
     WEBP_KIND,
     METADATA,

@@ -38,6 +38,9 @@ pub struct Geometry {
     pub flip: Flip,
     /// Degrees by which the picture is then turned clockwise, -45..=45.
     pub straighten: f64,
+    /// Whether the lean of the picture is to be found, and undone by `straighten`. Whoever has the photograph looks for it
+    /// ([`tilt`](crate::tilt)) and sets that.
+    pub auto_straighten: bool,
     /// Corners of what shall become a rectangle: top left, top right, bottom right, bottom left, each column and row in
     /// pixels of the upright picture, before it is straightened.
     pub perspective: Option<[[f64; 2]; 4]>,
@@ -51,6 +54,8 @@ pub struct Geometry {
     pub keep_fringes: bool,
     /// Size of the picture.
     pub resize: Resize,
+    /// How much a picture is sharpened that is made smaller, 0..=2; the plan sets it.
+    pub sharpening: f32,
     /// Whether `resize` may make it larger than it is.
     pub enlarge: bool,
 }

@@ -109,7 +109,7 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
         * to_canvas
         * moved(part.x, part.y)
         * scaled(across, down);
-    let warp = Warp::new(to_frame, lens, area.size(), zoom * across.max(down));
+    let warp = Warp::new(to_frame, lens, area.size(), zoom * across.max(down), asked.sharpening);
     Ok(Laid { size, crop: shown, orientation, warp: Some(warp), vignetting })
 }
 

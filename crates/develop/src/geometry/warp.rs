@@ -34,9 +34,16 @@ pub(crate) struct Places {
 }
 
 impl Warp {
-    /// `reduction` is how many pixels of the frame one of the picture stands for, along each axis.
-    pub(super) fn new(to_frame: Matrix3, lens: Vec<LensWarp>, area: Size, reduction: f64) -> Self {
-        Self { to_frame, lens, area, reduction, taps: Taps::of(reduction) }
+    /// `reduction` is how many pixels of the frame one of the picture stands for, along each axis; `sharpening` how much a smaller
+    /// picture is sharpened.
+    pub(super) fn new(
+        to_frame: Matrix3,
+        lens: Vec<LensWarp>,
+        area: Size,
+        reduction: f64,
+        sharpening: f32,
+    ) -> Self {
+        Self { to_frame, lens, area, reduction, taps: Taps::of(reduction, f64::from(sharpening)) }
     }
 
     /// As many columns of the picture as are made of so many of the frame.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Points;
+use super::headroom::Headroom;
 
 /// Changes of a look. All are 0 (saturation 1) where nothing is changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +22,9 @@ pub struct Tones {
     /// Stops by which what is nearly white gets brighter: all of it three stops above middle grey, where sensors clip, none
     /// at one. -1..=1.
     pub white: f32,
+    /// Stops above white that the picture has room for, 0..=4: all that is shown is a share of the brightest light there is room
+    /// for, so that 1 is that light and white lies below.
+    pub headroom: f32,
     /// Lightness that is shown in place of what all of the above gives.
     pub curve: Option<Points>,
     /// Factor on chroma, 0..=2.
@@ -37,6 +41,7 @@ impl Default for Tones {
             highlights: 0.0,
             black: 0.0,
             white: 0.0,
+            headroom: 0.0,
             curve: None,
             saturation: 1.0,
             vibrance: 0.0,
@@ -47,7 +52,7 @@ impl Default for Tones {
 impl Tones {
     /// Whether brightness stays as the look has it.
     pub(super) fn keeps_curve(&self) -> bool {
-        let zones = [self.contrast, self.shadows, self.highlights, self.black, self.white];
+        let zones = [self.contrast, self.shadows, self.highlights, self.black, self.white, self.headroom];
         self.curve.is_none() && zones.iter().all(|v| *v == 0.0)
     }
 
@@ -94,15 +99,19 @@ impl Table {
     pub(super) fn of(tones: &Tones, grey: f64, curve: impl Fn(f32) -> f32) -> Self {
         let count = ((POWERS.1 - POWERS.0) as usize) << BITS;
         let mut last = f64::NEG_INFINITY;
+        let mut headroom = (tones.headroom > 0.0).then(|| Headroom::of(tones.headroom, grey));
         let entry = |i: usize| {
             let first = ((127 + POWERS.0) as u32) << 23;
             let light = f64::from(f32::from_bits(first + ((i as u32) << (23 - BITS))));
             let stops = (light / grey).log2();
             // However much is asked for, brighter light is shown brighter.
             last = (stops + tones.stops(stops)).max(last + LEAST_RISE);
-            curve((grey * last.exp2()) as f32)
+            let light = grey * last.exp2();
+            let shown = curve(light as f32);
+            headroom.as_mut().map_or(shown, |headroom| headroom.at(light, shown))
         };
-        Self { entries: (0..=count).map(entry).collect(), black: curve(0.0) }
+        let black = curve(0.0) / tones.headroom.exp2();
+        Self { entries: (0..=count).map(entry).collect(), black }
     }
 
     /// What is shown of scene light, which is not negative.

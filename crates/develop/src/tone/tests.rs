@@ -271,3 +271,36 @@ fn saturation_and_vibrance_keep_hue_and_lightness_and_leave_grey() {
         }
     }
 }
+
+#[test]
+fn headroom_leaves_dark_light_alone_and_shows_bright_light_in_proportion() {
+    for look in LOOKS {
+        for stops in [1.0, 2.0, 3.0] {
+            let plain = Curve::of(look, &Tones::default(), None).unwrap();
+            let high = Curve::of(look, &Tones { headroom: stops, ..Tones::default() }, None).unwrap();
+            let peak = stops.exp2();
+            let mut previous = 0.0;
+            for i in 1..=4000 {
+                let light = i as f32 / 500.0;
+                let (sdr, hdr) = (plain.at(light), peak * high.at(light));
+                assert!(
+                    hdr > sdr - 1e-4 && hdr >= previous && hdr <= peak,
+                    "{look:?} {stops} at {light}: {sdr} {hdr}"
+                );
+                if light < METERED_GREY as f32 {
+                    assert!(
+                        (hdr - sdr).abs() < 1e-3 * sdr.max(0.01),
+                        "{look:?} {stops} at {light}: {sdr} {hdr}"
+                    );
+                }
+                previous = hdr;
+            }
+            // Twice the light is twice as bright where there is room.
+            let at = |light| peak * high.at(light);
+            if stops >= 2.0 {
+                assert!((at(1.0) / at(0.5) - 2.0).abs() < 0.01, "{look:?} {}", at(1.0) / at(0.5));
+            }
+            assert!(at(1e5) > 0.999 * peak, "{look:?}");
+        }
+    }
+}

@@ -40,6 +40,8 @@ pub(super) struct Parts<'a> {
     pub(super) bits: u8,
     /// Primaries and transfer curve by their numbers in ITU-T H.273; 2 where an ICC profile says them.
     pub(super) named: [u16; 2],
+    /// The matrix by which the colours are coded, by its number there.
+    pub(super) matrix: u16,
     /// ICC profile, or nothing.
     pub(super) profile: &'a [u8],
     /// Block of Exif from its TIFF head on, or nothing.
@@ -48,8 +50,6 @@ pub(super) struct Parts<'a> {
     pub(super) xmp: &'a [u8],
 }
 
-/// Matrix of ITU-R BT.601, by which the colours are coded.
-const MATRIX: u16 = 6;
 const FULL_RANGE: u8 = 0x80;
 
 impl Parts<'_> {
@@ -109,7 +109,7 @@ impl Parts<'_> {
             boxed(b"ispe", &[&[0; 4], &self.width.to_be_bytes(), &self.height.to_be_bytes()]),
             boxed(b"pixi", &[&[0; 4], &[3, self.bits, self.bits, self.bits]]),
             boxed(b"av1C", &[&self.coded.configuration]),
-            boxed(b"colr", &[b"nclx", &primaries, &curve, &MATRIX.to_be_bytes(), &[FULL_RANGE]]),
+            boxed(b"colr", &[b"nclx", &primaries, &curve, &self.matrix.to_be_bytes(), &[FULL_RANGE]]),
         ];
         if !self.profile.is_empty() {
             properties.push(boxed(b"colr", &[b"prof", self.profile]));

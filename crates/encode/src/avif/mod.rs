@@ -4,12 +4,13 @@
 //! R, G and B mean stands there: sRGB, Display P3 and Rec. 2020 by their numbers, all others by an ICC profile.
 
 mod boxes;
+mod hdr;
 
 use std::io::Write;
 
 use darkroot_colour::RgbSpace;
-use darkroot_photo::{Metadata, PictureSpace};
-use ravif::{BitDepth, Encoder, Img, RGBA8};
+use darkroot_photo::{Metadata, PictureSpace, Samples};
+use ravif::{BitDepth, Encoder, Img, MatrixCoefficients, PixelRange, RGBA8};
 
 use boxes::{Coded, Parts};
 
@@ -26,28 +27,39 @@ pub(crate) fn write(
     metadata: &Metadata,
     out: &mut Buffered<'_, '_>,
 ) -> Result<(), Error> {
-    // With opacity, which is dropped again: `encode_rgb` is compiled anew, with all of the encoder, in every crate that calls
-    // it, which takes minutes.
-    let pixels: Vec<RGBA8> =
-        frame.bytes().chunks_exact(3).map(|p| RGBA8::new(p[0], p[1], p[2], 255)).collect();
     let encoder = Encoder::new()
         .with_quality(f32::from(options.quality))
         .with_speed(options.avif_speed)
         .with_bit_depth(BitDepth::Ten)
         .with_num_threads(Some(TILES));
+    let (width, height) = (frame.width as usize, frame.height as usize);
     let failed = Error::encoder(Format::Avif);
-    let encoded = encoder
-        .encode_rgba(Img::new(&pixels[..], frame.width as usize, frame.height as usize))
-        .map_err(|e| failed(e.into()))?;
+    let (encoded, matrix, named) = match (frame.samples, options.peak) {
+        (Samples::F32(samples), Some(peak)) => {
+            let planes = hdr::planes(samples, peak);
+            let (range, matrix) = (PixelRange::Full, MatrixCoefficients::BT2020NCL);
+            let opacity = None::<[u16; 0]>;
+            let encoded = encoder.encode_raw_planes_10_bit(width, height, planes, opacity, range, matrix);
+            (encoded, hdr::MATRIX, Some(hdr::NAMED))
+        }
+        _ => {
+            // With opacity, which is dropped again: `encode_rgb` is compiled anew, with all of the encoder, in every crate that
+            // calls it, which takes minutes.
+            let pixels: Vec<RGBA8> =
+                frame.bytes().chunks_exact(3).map(|p| RGBA8::new(p[0], p[1], p[2], 255)).collect();
+            (encoder.encode_rgba(Img::new(&pixels[..], width, height)), MATRIX, named(frame.space))
+        }
+    };
+    let encoded = encoded.map_err(|e| failed(e.into()))?;
     let coded = Coded::of_file(&encoded.avif_file)
         .ok_or_else(|| Error::encoder(Format::Avif)("its file has no picture".into()))?;
-    let named = named(frame.space);
     let parts = Parts {
         width: frame.width,
         height: frame.height,
         coded: &coded,
         bits: BITS,
         named: named.unwrap_or([UNSPECIFIED; 2]),
+        matrix,
         profile: &if named.is_some() { Vec::new() } else { frame.profile() },
         exif: &exif::block(metadata),
         xmp: exif::xmp(metadata),
@@ -55,6 +67,8 @@ pub(crate) fn write(
     out.write_all(&parts.file()).map_err(Error::Io)
 }
 
+/// The matrix of ITU-R BT.601, by which ravif codes colours.
+const MATRIX: u16 = 6;
 /// Bits of the coded picture.
 const BITS: u8 = 10;
 /// In ITU-T H.273: somebody else says it.

@@ -27,6 +27,8 @@ pub(super) struct Header<'a> {
     pub(super) xmp: &'a [u8],
     /// Block of IPTC-IIM, or nothing. One that is too large for a segment is left out.
     pub(super) iptc: &'a [u8],
+    /// Further segments of APP2.
+    pub(super) more: &'a [Vec<u8>],
 }
 
 impl Header<'_> {
@@ -59,6 +61,9 @@ impl Header<'_> {
         let count = parts.len() as u8;
         for (number, part) in (1..).zip(parts) {
             segment(&mut out, 0xe2, &[ICC, &[number, count], part]);
+        }
+        for content in self.more {
+            segment(&mut out, 0xe2, &[content]);
         }
         out
     }

@@ -5,6 +5,7 @@
 //! It is our own because it is a quarter of all work when a photograph is developed: see `docs/performance.md`.
 
 mod entropy;
+pub mod gain_map;
 mod header;
 mod progressive;
 mod tables;
@@ -44,6 +45,9 @@ pub(crate) fn write<T: Sample>(
     let units = size.width.div_ceil(subsampling.width());
     let high = (BAND_ROWS / subsampling.height()).min(usize::from(u16::MAX) / units).max(1);
     let rows = high * subsampling.height();
+    let second = options.gain_map.as_ref().map(|map| gain_map::file(map)).transpose()?;
+    let xmp = exif::xmp(metadata);
+    let naming = second.as_ref().map(|second| gain_map::naming(xmp, second.len()));
     let header = Header {
         size: *size,
         subsampling,
@@ -51,22 +55,25 @@ pub(crate) fn write<T: Sample>(
         restart: if size.height > rows { (units * high) as u16 } else { 0 },
         profile: &profile_of(space),
         exif: &block_that_fits(metadata)?,
-        xmp: exif::xmp(metadata),
+        xmp: naming.as_deref().unwrap_or(xmp),
+        more: if second.is_some() { &gain_map::segments() } else { &[] },
         iptc: exif::iptc(metadata),
     };
+    let bytes = if options.progressive { header.about() } else { header.bytes() };
+    out.write_all(&bytes).map_err(Error::Io)?;
     if options.progressive {
-        out.write_all(&header.about()).map_err(Error::Io)?;
         let whole = Vec::with_capacity(3 * size.area());
         let keep = |_, samples: &[T]| Ok(bytemuck::cast_slice::<T, u8>(samples).to_vec());
         let whole = bands::code(*size, rows, Whole(whole), keep, make)?;
         let scans = progressive::scans(*size, &whole.0, options)?;
-        return out.write_all(&scans).map_err(Error::Io);
+        out.write_all(&scans).map_err(Error::Io)?;
+        return second.map_or(Ok(()), |second| gain_map::settle(&bytes, &second, out));
     }
-    out.write_all(&header.bytes()).map_err(Error::Io)?;
     let scan = Scan::new(subsampling, options.quality);
     let code = |_, samples: &[T]| Ok(scan.encode(bytemuck::cast_slice(samples), size.width));
     let scan = bands::code(*size, rows, RestartMarkers { out, next: None }, code, make)?;
-    scan.out.write_all(&END).map_err(Error::Io)
+    scan.out.write_all(&END).map_err(Error::Io)?;
+    second.map_or(Ok(()), |second| gain_map::settle(&bytes, &second, out))
 }
 
 /// All samples.
