@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
-use darkroot::{Effective, Key, path_text};
+use darkroot::{CommonLook, Effective, Key, ProfileStore, path_text};
 use serde_json::{Map, Value, json};
 
 use crate::Outcome;
@@ -29,6 +29,10 @@ pub(crate) struct Recipe {
     #[arg(long)]
     json: bool,
 
+    /// Instead, a recipe with the one look that the camera gave all FILEs, by their embedded previews
+    #[arg(long, requires = "files", conflicts_with = "json")]
+    camera_look: bool,
+
     /// Describe every setting as JSON instead: its values, its default, what it changes
     #[arg(long, conflicts_with = "files")]
     describe: bool,
@@ -39,6 +43,9 @@ impl Recipe {
         if self.describe {
             writeln!(crate::out::ours(), "{:#}", darkroot::settings::describe())?;
             return Ok(Outcome::Done);
+        }
+        if self.camera_look {
+            return self.look();
         }
         let mut layers = self.picture.layers()?;
         let mut recipes = Vec::new();
@@ -61,6 +68,37 @@ impl Recipe {
             writeln!(out, "# {}", title)?;
             write!(out, "{}", effective.to_toml(picture::shown))?;
         }
+        Ok(Outcome::Done)
+    }
+}
+
+impl Recipe {
+    /// One look for all files.
+    fn look(&self) -> Result<Outcome> {
+        let settings = self.picture.layers()?.for_folder(Path::new("."))?.settings()?;
+        let store = ProfileStore::user_folder()
+            .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
+        let found = darkroot::common_look(&self.files, &settings, &store)?;
+        let Some(CommonLook { camera, look, told_by, without }) = found else {
+            anyhow::bail!("no file has an embedded preview that tells of the camera's look");
+        };
+        for why in &without {
+            crate::out::say(format_args!("left out: {why}"));
+        }
+        let photographs =
+            if told_by == 1 { "1 photograph".to_owned() } else { format!("{told_by} photographs") };
+        let mut out = crate::out::lines();
+        writeln!(
+            out,
+            "# The look of {camera}, by the previews of {photographs}, which differ from it by {:.1} L*",
+            look.left
+        )?;
+        writeln!(
+            out,
+            "look = \"neutral\"\ncurve = \"{}\"\nsaturation = {:.2}",
+            look.curve(),
+            look.saturation
+        )?;
         Ok(Outcome::Done)
     }
 }

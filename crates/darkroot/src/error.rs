@@ -210,6 +210,16 @@ pub enum Error {
         /// The output.
         path: PathBuf,
     },
+    /// A photograph of another camera than the others, where a camera's look is asked for.
+    #[error("{path}: is of {camera}, and those before it of {of}; a look is for one camera", path = shown(path))]
+    LookOfOther {
+        /// The raw file.
+        path: PathBuf,
+        /// Its camera.
+        camera: String,
+        /// That of the others.
+        of: String,
+    },
     /// The colours of a photograph do not fit into a DNG.
     #[error("{path}: its colours cannot go into a DNG: {}", sentence(source), path = shown(path))]
     Dng {

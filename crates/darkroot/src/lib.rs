@@ -35,6 +35,9 @@ pub use naming::{Job, NamingError, Target, plan_outputs};
 pub mod job;
 pub use job::{Control, Report, Step, develop, develop_into, encode_picture, open_output};
 
+pub mod common_look;
+pub use common_look::{CommonLook, common_look};
+
 pub mod frames;
 pub use frames::FrameFault;
 

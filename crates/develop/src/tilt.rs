@@ -26,8 +26,16 @@ const STEP: f64 = 0.1;
 const ANGLES: usize = 161;
 /// Edges must run this near to level or upright, degrees.
 const NEAR: f64 = 12.0;
+/// What the angle of an edge, by its own pixels, may differ from that of its line, degrees.
+const SPREAD: f32 = 3.0;
 /// Least clearness of an angle that is believed.
 const CLEAR: f64 = 6.0;
+/// Spread between angles that there is at least, as a share: at 0 whole rows fall together, which is no line.
+const USUAL: f64 = 0.1;
+/// An angle that stands out further is as clear as can be.
+const CLEAREST: f64 = 40.0;
+/// How much clearer one angle must be than another that contradicts it.
+const MUCH: f64 = 4.0;
 /// What two angles may differ, degrees, to be the same.
 const SAME: f64 = 0.4;
 /// Rows and columns next to the borders that are not looked at, as a share.
@@ -35,8 +43,8 @@ const BORDER: f64 = 0.02;
 
 /// Edges of one kind: where each is, and how strong.
 struct Edges {
-    /// Along the direction in which it runs, across it, and its strength.
-    at: Vec<[f32; 3]>,
+    /// Along the direction in which it runs, across it, its strength, and its own angle in degrees.
+    at: Vec<[f32; 4]>,
     /// Pixels across.
     span: usize,
 }
@@ -50,11 +58,11 @@ pub fn tilt(picture: &Picture) -> Option<Tilt> {
         let degrees = (a.0 * a.1 + b.0 * b.1) / (a.1 + b.1);
         return Some(Tilt { degrees, clearness: a.1.max(b.1), level: true, upright: true });
     }
-    // Where they contradict each other, the clearer one must be much clearer.
+    // Where they contradict each other, one must be much clearer.
     let single = |found: Option<(f64, f64)>, other: Option<(f64, f64)>, level: bool| {
         let (degrees, clearness) = found?;
         let beside = other.map_or(0.0, |(_, clearness)| clearness);
-        (clearness >= 2.0 * beside).then_some(Tilt { degrees, clearness, level, upright: !level })
+        (clearness >= MUCH * beside).then_some(Tilt { degrees, clearness, level, upright: !level })
     };
     single(level, upright, true).or_else(|| single(upright, level, false))
 }
@@ -90,10 +98,10 @@ fn edges(light: &[f32], Size { width, height }: Size) -> [Edges; 2] {
             let weight = strength.min(12.0);
             let (u, v) = (x as f32 - 0.5 * width as f32, y as f32 - 0.5 * height as f32);
             if across.abs() < tangent * down.abs() {
-                found[0].at.push([u, v, weight]);
+                found[0].at.push([u, v, weight, (-across / down).atan().to_degrees()]);
             } else if down.abs() < tangent * across.abs() {
                 // Turned by a quarter, so that upright lines lean as level ones do.
-                found[1].at.push([-v, u, weight]);
+                found[1].at.push([-v, u, weight, (down / across).atan().to_degrees()]);
             }
         }
     }
@@ -111,8 +119,8 @@ fn peak(edges: &Edges) -> Option<(f64, f64)> {
     let mut sorted = scores.clone();
     sorted.sort_by(f64::total_cmp);
     let (middle, quarter) = (sorted[ANGLES / 2], sorted[ANGLES / 4]);
-    let spread = (middle - quarter).max(1e-3 * middle);
-    let clearness = (scores[best] - middle) / spread;
+    let spread = (middle - quarter).max(USUAL * middle);
+    let clearness = ((scores[best] - middle) / spread).min(CLEAREST);
     let [before, at, after] = [best - 1, best, best + 1].map(|i| scores[i]);
     // The top of the parabola through three.
     let bend = before - 2.0 * at + after;
@@ -127,13 +135,19 @@ fn concentration(edges: &Edges, degrees: f64) -> f64 {
     let (sine, cosine) = (sine as f32, cosine as f32);
     let middle = edges.span as f32;
     let mut sums = vec![0f64; 2 * edges.span + 2];
-    for [u, v, weight] in &edges.at {
+    // Edges that run another way are no part of a line: round things would have most at 0.
+    let same_way = edges.at.iter().filter(|[.., own]| (own - degrees as f32).abs() < SPREAD);
+    for [u, v, weight, _] in same_way {
         let place = (v * cosine - u * sine + middle).max(0.0);
         let (i, part) = (place as usize, place.fract());
         if i + 1 < sums.len() {
             sums[i] += f64::from(weight * (1.0 - part));
             sums[i + 1] += f64::from(weight * part);
         }
+    }
+    // At no angle but 0 do whole rows fall onto whole places: that must not show.
+    for _ in 0..3 {
+        sums = sums.windows(3).map(|w| 0.25 * w[0] + 0.5 * w[1] + 0.25 * w[2]).collect();
     }
     // What lies beside a line counts against it.
     sums.windows(3).map(|w| (w[1] - 0.5 * (w[0] + w[2])).powi(2)).sum()
@@ -147,22 +161,28 @@ mod tests {
 
     const SIZE: Size = Size { width: 600, height: 400 };
 
-    /// A picture of brightness at each place about its middle, smoothed over a pixel, with some texture.
+    /// A picture of brightness at each place about its middle, with some texture.
     fn picture(bright: impl Fn(f64, f64) -> f64) -> Picture {
         let mut samples = Vec::new();
         for y in 0..SIZE.height {
             for x in 0..SIZE.width {
-                let sum: f64 = (0..9)
-                    .map(|i| {
-                        let (dx, dy) = (f64::from(i % 3) / 3.0 - 0.33, f64::from(i / 3) / 3.0 - 0.33);
-                        bright(x as f64 + dx - 300.0, y as f64 + dy - 200.0)
-                    })
-                    .sum();
                 let texture = ((x * 7919 + y * 104_729 + x * y * 31) % 23) as f64 / 6.0;
-                samples.extend([(sum / 9.0 + texture).clamp(0.0, 255.0) as u8; 3]);
+                let light = bright(x as f64 - 300.0, y as f64 - 200.0) + texture;
+                samples.extend([light.clamp(0.0, 255.0) as u8; 3]);
             }
         }
         Picture { size: SIZE, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) }
+    }
+
+    /// From 0 to 1 where a distance becomes positive, as soft as a lens draws it.
+    fn edge(distance: f64) -> f64 {
+        1.0 / (1.0 + (-1.8 * distance).exp())
+    }
+
+    /// Bands of this width, as far apart.
+    fn band(at: f64, width: f64) -> f64 {
+        let at = at.rem_euclid(2.0 * width);
+        edge(at) * edge(width - at) + edge(at - 2.0 * width)
     }
 
     fn leaning(degrees: f64) -> impl Fn(f64, f64) -> (f64, f64) {
@@ -174,7 +194,7 @@ mod tests {
     fn a_horizon_is_found_to_a_tenth_of_a_degree() {
         for degrees in [-5.3, -1.0, 0.0, 0.45, 2.7, 6.0] {
             let turned = leaning(degrees);
-            let sea = picture(|x, y| if turned(x, y).1 > 30.0 { 70.0 } else { 180.0 });
+            let sea = picture(|x, y| 180.0 - 110.0 * edge(turned(x, y).1 - 30.0));
             let found = tilt(&sea).unwrap();
             assert!((found.degrees + degrees).abs() < 0.1 && found.level, "{degrees}: {found:?}");
         }
@@ -186,8 +206,7 @@ mod tests {
             let turned = leaning(degrees);
             let front = picture(|x, y| {
                 let (u, v) = turned(x, y);
-                let window = u.rem_euclid(60.0) < 26.0 && v.rem_euclid(70.0) < 40.0;
-                if window { 60.0 } else { 160.0 }
+                160.0 - 100.0 * band(u, 28.0) * band(v, 37.0)
             });
             let found = tilt(&front).unwrap();
             assert!((found.degrees + degrees).abs() < 0.1, "{degrees}: {found:?}");
@@ -197,10 +216,21 @@ mod tests {
 
     #[test]
     fn what_has_no_lines_has_no_tilt() {
-        let blobs =
-            picture(|x, y| 120.0 + 60.0 * ((x / 19.0).sin() * (y / 23.0).cos() + (x * y / 4000.0).sin()));
-        assert_eq!(tilt(&blobs), None);
-        let round = picture(|x, y| if x.hypot(y) % 50.0 < 25.0 { 90.0 } else { 150.0 });
+        // Fruit.
+        // Places without a common measure, in which nothing is in line.
+        let part = |i: u32, step: f64| (f64::from(i * i + i) * step).fract();
+        let disc = |i: u32| {
+            [600.0 * part(i, 0.7548) - 300.0, 400.0 * part(i, 0.5698) - 200.0, 8.0 + 30.0 * part(i, 0.3819)]
+        };
+        let discs: Vec<[f64; 3]> = (0..60).map(disc).collect();
+        let fruit = picture(|x, y| {
+            discs.iter().enumerate().fold(60.0, |below, (i, [u, v, r])| {
+                let over = edge(r - (x - u).hypot(y - v));
+                below + over * (80.0 + 23.0 * (i % 7) as f64 - below)
+            })
+        });
+        assert_eq!(tilt(&fruit), None);
+        let round = picture(|x, y| 90.0 + 60.0 * band(x.hypot(y), 25.0));
         assert_eq!(tilt(&round), None);
         assert_eq!(tilt(&picture(|_, _| 128.0)), None);
     }
@@ -208,11 +238,7 @@ mod tests {
     #[test]
     fn lines_that_contradict_each_other_tell_nothing() {
         let (one, two) = (leaning(3.0), leaning(-2.0));
-        let both = picture(|x, y| {
-            let level = one(x, y).1.rem_euclid(50.0) < 25.0;
-            let upright = two(x, y).0.rem_euclid(50.0) < 25.0;
-            90.0 + 50.0 * f64::from(u8::from(level)) + 50.0 * f64::from(u8::from(upright))
-        });
+        let both = picture(|x, y| 90.0 + 50.0 * band(one(x, y).1, 25.0) + 50.0 * band(two(x, y).0, 25.0));
         assert_eq!(tilt(&both), None);
     }
 }

@@ -36,7 +36,7 @@ pub enum Correction {
     ColumnScale(Area, Vec<f32>),
     /// Opcode 3, FixVignetteRadial.
     Vignette(Vignette),
-    /// Opcodes 1 and 2, WarpRectilinear and WarpFisheye: lens distortion and lateral chromatic aberration.
+    /// Opcodes 1, 2 and 14, WarpRectilinear, WarpFisheye and WarpRectilinear2: lens distortion and lateral chromatic aberration.
     Warp(Warp),
 }
 
@@ -71,8 +71,30 @@ pub struct Vignette {
 pub enum Projection {
     /// Straight, but for its distortion.
     Rectilinear,
+    /// The same, the distortion given the other way round: a point is divided by its factor.
+    RectilinearInverse,
     /// As a fisheye does.
     Fisheye,
+}
+
+/// What a lens does to the points of one plane. Radii are distances from the centre over that of the farthest corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Distortion {
+    /// By powers from 0 to 14 of the radius (of the angle, for a fisheye): their sum is the factor on a point's radius.
+    pub radial: [f64; 15],
+    /// kt0, kt1.
+    pub tangential: [f64; 2],
+    /// Least and largest radius for which that holds; what lies beyond is taken for it.
+    pub valid: [f64; 2],
+}
+
+impl From<[f64; 6]> for Distortion {
+    /// kr0..kr3, of even powers, and kt0, kt1, for all radii.
+    fn from([k0, k1, k2, k3, t0, t1]: [f64; 6]) -> Self {
+        let mut radial = [0.0; 15];
+        (radial[0], radial[2], radial[4], radial[6]) = (k0, k1, k2, k3);
+        Self { radial, tangential: [t0, t1], valid: [0.0, f64::MAX] }
+    }
 }
 
 /// Where each point of the corrected picture comes from, by plane.
@@ -80,8 +102,8 @@ pub enum Projection {
 pub struct Warp {
     /// What lens the coefficients are for.
     pub projection: Projection,
-    /// kr0..kr3 (radial) and kt0, kt1 (tangential, 0 for a fisheye) for each plane; one set serves all planes.
-    pub planes: Vec<[f64; 6]>,
+    /// For each plane; one serves all planes.
+    pub planes: Vec<Distortion>,
     /// Centre as a fraction of width and height.
     pub centre: (f64, f64),
 }

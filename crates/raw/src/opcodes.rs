@@ -1,7 +1,7 @@
 //! DNG opcode lists 2 and 3 as corrections (DNG 1.7, chapter 7). Numbers in them are big-endian.
 
 use darkroot_photo::Rect;
-use darkroot_photo::correction::{Area, Correction, GainMap, Projection, Vignette, Warp};
+use darkroot_photo::correction::{Area, Correction, Distortion, GainMap, Projection, Vignette, Warp};
 
 /// Flag bit: a reader that does not know the opcode may skip it.
 const OPTIONAL: u32 = 1;
@@ -54,7 +54,7 @@ fn is_whole(id: u32, body: &mut Reader<'_>) -> Option<bool> {
             length == 16 && top < bottom && left < right
         }
         // Those that are applied where they are whole.
-        1..=3 | 7..=13 => false,
+        1..=3 | 7..=14 => false,
         _ => true,
     })
 }
@@ -82,12 +82,14 @@ fn opcode_name(id: u32) -> String {
 fn correction(id: u32, body: &mut Reader<'_>) -> Option<Correction> {
     Some(match id {
         1 => {
-            let planes = (0..body.u32()?.min(4)).map(|_| body.f64s()).collect::<Option<Vec<[f64; 6]>>>()?;
+            let count = body.u32()?.min(4);
+            let plane = |_| body.f64s::<6>().map(Distortion::from);
+            let planes = (0..count).map(plane).collect::<Option<Vec<_>>>()?;
             let projection = Projection::Rectilinear;
             Correction::Warp(Warp { projection, planes, centre: (body.f64()?, body.f64()?) })
         }
         2 => {
-            let radial = |[a, b, c, d]: [f64; 4]| [a, b, c, d, 0.0, 0.0];
+            let radial = |[a, b, c, d]: [f64; 4]| Distortion::from([a, b, c, d, 0.0, 0.0]);
             let planes =
                 (0..body.u32()?.min(4)).map(|_| body.f64s().map(radial)).collect::<Option<Vec<_>>>()?;
             let projection = Projection::Fisheye;
@@ -134,6 +136,21 @@ fn correction(id: u32, body: &mut Reader<'_>) -> Option<Correction> {
                 12 => Correction::RowScale(area, values),
                 _ => Correction::ColumnScale(area, values),
             }
+        }
+        14 => {
+            let count = body.u32()?.min(4);
+            let plane = |_| {
+                let (radial, tangential) = (body.f64s()?, body.f64s()?);
+                Some(Distortion { radial, tangential, valid: body.f64s()? })
+            };
+            let planes = (0..count).map(plane).collect::<Option<Vec<_>>>()?;
+            let centre = (body.f64()?, body.f64()?);
+            let projection = match body.u32()? {
+                0 => Projection::Rectilinear,
+                _ => Projection::RectilinearInverse,
+            };
+            let sound = planes.iter().all(|plane| plane.valid[0] <= plane.valid[1]);
+            return sound.then_some(Correction::Warp(Warp { projection, planes, centre }));
         }
         _ => return None,
     })
@@ -254,7 +271,7 @@ mod tests {
             assert_eq!(said(whole[..whole.len() - 1].to_vec()), damaged);
             assert_eq!(said(Vec::new()), damaged);
         }
-        for id in (7..=13).chain([1, 3]) {
+        for id in (7..=14).chain([1, 3]) {
             let mut notes = Vec::new();
             assert!(parse(&list(&[(id, 0, vec![0; 3])]), "OpcodeList2", &mut notes).is_empty());
             let damaged = format!("the mandatory correction {} is damaged", opcode_name(id));

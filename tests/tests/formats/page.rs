@@ -47,8 +47,8 @@ A real file says more than a synthetic one, and one file says nothing of the mak
 `DARKROOT_DATA` are not part of the repository.
 
 What is in a DNG and is not used is said in a note of the report: local tone maps (ProfileGainTableMap, 1 and 2), colour tables
-(RGBTables), semantic and transparency masks, depth maps, enhanced pictures; of opcodes WarpRectilinear2,
-TrimBounds, warps of the mosaic, and bad pixels outside of OpcodeList1. Refused in words: integers of 32 bits, separate
+(RGBTables), semantic and transparency masks, depth maps, enhanced pictures; of opcodes TrimBounds,
+warps of the mosaic, and bad pixels outside of OpcodeList1. Refused in words: integers of 32 bits, separate
 planes, four-colour sensors.
 ";
 

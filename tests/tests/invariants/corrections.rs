@@ -209,7 +209,7 @@ fn places_count_from_the_active_area() {
 #[test]
 fn what_is_not_applied_is_said() {
     let projection = Projection::Rectilinear;
-    let planes = vec![[1.0, 0.1, 0.0, 0.0, 0.0, 0.0]];
+    let planes = vec![[1.0, 0.1, 0.0, 0.0, 0.0, 0.0].into()];
     let warp = Correction::Warp(Warp { projection, planes, centre: (0.5, 0.5) });
     let warped = with(vec![], vec![warp], filters("RGGB"));
     let geometry = Geometry { lens: Lens::Off, ..Geometry::default() };

@@ -2,7 +2,7 @@
 
 use darkroot_develop::{Cancel, Crop, Flip, Geometry, Lens, Recipe, Resize, Scale, Turn, View};
 use darkroot_lens::Corrections;
-use darkroot_photo::correction::{Projection, Warp};
+use darkroot_photo::correction::{Distortion, Projection, Warp};
 use darkroot_photo::{Capture, Correction, Layout, Orientation, Picture, Rect, Size};
 use darkroot_simulate::camera::filters;
 use darkroot_simulate::{Exposure, Scene};
@@ -88,7 +88,11 @@ fn what_the_lens_did_is_undone_as_the_file_says() {
         [0.975, 0.04, -0.012, 0.001, 0.001, -0.0005],
     ];
     let mut capture = capture(waves);
-    let warp = Warp { projection: Projection::Rectilinear, planes: planes.clone(), centre: (0.48, 0.53) };
+    let warp = Warp {
+        projection: Projection::Rectilinear,
+        planes: planes.iter().map(|p| Distortion::from(*p)).collect(),
+        centre: (0.48, 0.53),
+    };
     capture.picture_corrections = vec![Correction::Warp(warp)];
     let geometry = Geometry { lens: Lens::File, ..Geometry::default() };
     let picture = developed(&capture, Crop::Default, geometry);
@@ -113,10 +117,46 @@ fn what_the_lens_did_is_undone_as_the_file_says() {
 }
 
 #[test]
+fn what_newer_files_say_of_the_lens_is_undone() {
+    // Odd powers, and a radius from which on nothing more is said.
+    let mut radial = [0.0; 15];
+    (radial[0], radial[1], radial[3], radial[14]) = (0.97, 0.02, -0.015, 0.01);
+    let plane = Distortion { radial, tangential: [0.001, -0.002], valid: [0.05, 0.8] };
+    let reach = (0.5f64 * 299.0).hypot(0.5 * 199.0);
+    for (projection, name) in
+        [(Projection::Rectilinear, "factor"), (Projection::RectilinearInverse, "inverse")]
+    {
+        let plane = match projection {
+            Projection::RectilinearInverse => Distortion { radial: radial.map(|k| 1.04 * k), ..plane },
+            _ => plane,
+        };
+        let mut capture = capture(waves);
+        let warp = Warp { projection, planes: vec![plane], centre: (0.5, 0.5) };
+        capture.picture_corrections = vec![Correction::Warp(warp)];
+        let picture =
+            developed(&capture, Crop::Default, Geometry { lens: Lens::File, ..Geometry::default() });
+        // DNG 1.7, chapter 7, WarpRectilinear2.
+        shows(&picture, name, |_, x, y| {
+            let (dx, dy) = ((x - 150.0) / reach, (y - 100.0) / reach);
+            let r = dx.hypot(dy).clamp(0.05, 0.8);
+            let sum: f64 = (0..15).map(|i| plane.radial[i] * r.powi(i as i32)).sum();
+            let f = if name == "inverse" { 1.0 / sum } else { sum };
+            let r2 = dx * dx + dy * dy;
+            let [t0, t1] = plane.tangential;
+            [
+                150.0 + reach * (f * dx + t0 * 2.0 * dx * dy + t1 * (r2 + 2.0 * dx * dx)),
+                100.0 + reach * (f * dy + t1 * 2.0 * dx * dy + t0 * (r2 + 2.0 * dy * dy)),
+            ]
+        });
+    }
+}
+
+#[test]
 fn a_fisheye_is_straightened() {
     let mut capture = capture(waves);
     let coefficients = [1.0, 0.12, -0.02, 0.01, 0.0, 0.0];
-    let warp = Warp { projection: Projection::Fisheye, planes: vec![coefficients], centre: (0.5, 0.5) };
+    let warp =
+        Warp { projection: Projection::Fisheye, planes: vec![coefficients.into()], centre: (0.5, 0.5) };
     capture.picture_corrections = vec![Correction::Warp(warp)];
     let picture = developed(&capture, Crop::Default, Geometry { lens: Lens::File, ..Geometry::default() });
     let reach = (0.5f64 * 299.0).hypot(0.5 * 199.0);
@@ -177,7 +217,7 @@ fn what_lensfun_knows_of_the_lens_is_undone() {
     shows(&plain, "green", |c, x, y| place(&green, zoom, c, x, y));
     // The file's own correction goes first.
     let mut with_own = dark;
-    let planes = vec![[0.97, 0.03, 0.0, 0.0, 0.0, 0.0]];
+    let planes = vec![[0.97, 0.03, 0.0, 0.0, 0.0, 0.0].into()];
     let own = Warp { projection: Projection::Rectilinear, planes, centre: (0.5, 0.5) };
     with_own.picture_corrections = vec![Correction::Warp(own)];
     let file = Geometry { lens: Lens::File, ..Geometry::default() };
@@ -259,9 +299,9 @@ fn tiles_and_views_of_a_mapped_picture_are_parts_of_it() {
     let warp = Warp {
         projection: Projection::Rectilinear,
         planes: vec![
-            [0.99, 0.02, 0.0, 0.0, 0.0, 0.0],
-            [0.99, 0.021, 0.0, 0.0, 0.0, 0.0],
-            [0.99, 0.022, 0.0, 0.0, 0.0, 0.0],
+            [0.99, 0.02, 0.0, 0.0, 0.0, 0.0].into(),
+            [0.99, 0.021, 0.0, 0.0, 0.0, 0.0].into(),
+            [0.99, 0.022, 0.0, 0.0, 0.0, 0.0].into(),
         ],
         centre: (0.5, 0.5),
     };

@@ -42,6 +42,42 @@ fn a_picture_has_the_size_that_was_asked_for() {
 }
 
 #[test]
+fn a_picture_that_leans_is_straightened_by_its_lines() {
+    let desk = Desk::new();
+    for degrees in ["2.5", "-1.2"] {
+        let turn = format!("--straighten={degrees}");
+        desk.develop(&[
+            sample("still-life.dng").to_str().unwrap(),
+            &turn,
+            "-o",
+            "leaning.dng",
+            "--overwrite",
+        ]);
+        let run = desk.run(&[
+            "develop",
+            "leaning.dng",
+            "-o",
+            "o.jpg",
+            "--straighten",
+            "auto",
+            "--overwrite",
+            "--json",
+        ]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        let found = run.out.split("straightened by ").nth(1).and_then(|rest| rest.split(' ').next());
+        let found: f64 = found.unwrap_or_else(|| panic!("{}", run.out)).parse().unwrap();
+        let right = -degrees.parse::<f64>().unwrap();
+        assert!((found - right).abs() < 0.15, "{degrees}: {found}");
+    }
+    // A scene of slopes has no lines.
+    let flat = expose(&Scene::gradient(FRAME), &Camera::simulated_one(), &Exposure::default());
+    desk.put("slope.dng", dng::write(&flat, dng::Storage::Uncompressed));
+    let run = desk.run(&["develop", "slope.dng", "-o", "slope.png", "--straighten", "auto", "--json"]);
+    assert!(run.code == 0 && run.out.contains("was not straightened"), "{} {}", run.out, run.err);
+    assert_eq!(size(&desk, "slope.png"), (WIDTH, HEIGHT));
+}
+
+#[test]
 fn a_recipe_says_it_too_and_a_batch_follows() {
     let desk = Desk::new();
     desk.put("roll/a.dng", small_dng());

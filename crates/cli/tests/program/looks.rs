@@ -53,3 +53,49 @@ fn a_camera_without_a_preview_has_no_look_and_has_one_curve_only() {
     desk.fails(2, &curve, &["has a curve of its own"]);
     assert!(!desk.path("o.png").exists());
 }
+
+#[test]
+fn one_look_is_made_of_the_previews_of_several_photographs() {
+    let desk = Desk::new();
+    let nef = sample("still-life.nef");
+    // The preview of a linear DNG has the look that was asked for.
+    for (name, exposure) in [("roll/a.dng", "0"), ("roll/b.dng", "-0.7"), ("roll/c.dng", "0.4")] {
+        std::fs::create_dir_all(desk.path("roll")).unwrap();
+        desk.develop(&[
+            nef.to_str().unwrap(),
+            "-o",
+            name,
+            "--contrast=-0.6",
+            "--saturation=1.2",
+            &format!("--exposure={exposure}"),
+        ]);
+    }
+    let run = desk.run(&["recipe", "roll/a.dng", "roll/b.dng", "roll/c.dng", "--camera-look"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.contains("by the previews of 3 photographs"), "{}", run.out);
+    let number = |after: &str| -> f64 {
+        let rest = run.out.split(after).nth(1).unwrap();
+        rest.trim_start_matches([' ', '=']).split_whitespace().next().unwrap().parse().unwrap()
+    };
+    assert!((number("saturation") - 1.2).abs() < 0.1, "{}", run.out);
+    // Less contrast: what is dark becomes brighter, and what is bright darker.
+    let points = run.out.split('"').nth(3).unwrap();
+    let points: Vec<[f64; 2]> = points
+        .split(',')
+        .map(|pair| {
+            let (before, after) = pair.split_once(':').unwrap();
+            [before.parse().unwrap(), after.parse().unwrap()]
+        })
+        .collect();
+    let (dark, bright) = (points[1], points[points.len() - 1]);
+    assert!(dark[1] > dark[0] && bright[1] < bright[0], "{points:?}");
+    // It is a recipe that a batch takes.
+    desk.put("roll/darkroot.toml", &run.out);
+    let run = desk.run(&["batch", "roll", "-o", "out"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    desk.put("d.dng", small_dng());
+    let other = desk.run(&["recipe", "roll/a.dng", "d.dng", "--camera-look"]);
+    assert!(other.code == 0 && other.err.contains("left out"), "{} {}", other.out, other.err);
+    let none = desk.run(&["recipe", "d.dng", "--camera-look"]);
+    assert!(none.code != 0 && none.err.contains("no file has"), "{}", none.err);
+}

@@ -5,8 +5,10 @@
 //! mind local changes. A preview that no curve explains is refused.
 
 mod cells;
+mod common;
 
 pub use cells::Cells;
+pub use common::common;
 
 use std::sync::Arc;
 
@@ -81,8 +83,13 @@ pub struct CameraLook {
 impl CameraLook {
     /// As settings are written.
     pub fn words(&self) -> String {
+        format!("--curve {} --saturation {:.2}", self.curve(), self.saturation)
+    }
+
+    /// The curve as the setting of that name is written.
+    pub fn curve(&self) -> String {
         let points: Vec<String> = self.points.iter().map(|[a, b]| format!("{a:.0}:{b:.0}")).collect();
-        format!("--curve {} --saturation {:.2}", points.join(","), self.saturation)
+        points.join(",")
     }
 
     /// The changes of a look, with these laid over them.

@@ -1,13 +1,13 @@
 //! Where a point of the picture without the lens's distortion lies in the picture as taken.
 
 use darkroot_lens::Corrections;
-use darkroot_photo::correction::{Projection, Warp};
+use darkroot_photo::correction::{Distortion, Projection, Warp};
 use darkroot_photo::{Capture, Correction, Rect, Size};
 
 /// One correction of a lens, for a picture of known size.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum LensWarp {
-    /// DNG WarpRectilinear or WarpFisheye (DNG 1.7, chapter 7).
+    /// DNG WarpRectilinear, WarpRectilinear2 or WarpFisheye (DNG 1.7, chapter 7).
     Dng {
         /// Column and row of the optical centre; the middle of the first pixel is (0.5, 0.5).
         centre: [f64; 2],
@@ -15,7 +15,7 @@ pub(super) enum LensWarp {
         reach: f64,
         projection: Projection,
         /// One set of coefficients, or one for each of red, green and blue.
-        planes: Vec<[f64; 6]>,
+        planes: Vec<Distortion>,
     },
     /// What the lensfun database has.
     Measured {
@@ -48,7 +48,7 @@ impl LensWarp {
             (_, true) => warp.planes[1..2].to_vec(),
             (_, false) => warp.planes[..3].to_vec(),
         };
-        let nothing = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let nothing = Distortion::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let moves =
             warp.projection == Projection::Fisheye || !planes.iter().all(|plane| alike(plane, &nothing));
         (reach > 0.0 && moves).then_some(Self::Dng { centre, reach, projection: warp.projection, planes })
@@ -86,26 +86,31 @@ impl LensWarp {
 }
 
 /// Where a point comes from, both in units of the reach from the centre.
-fn dng_place(projection: Projection, &[k0, k1, k2, k3, t0, t1]: &[f64; 6], dx: f64, dy: f64) -> [f64; 2] {
+fn dng_place(projection: Projection, plane: &Distortion, dx: f64, dy: f64) -> [f64; 2] {
     let square = dx * dx + dy * dy;
+    let radius = square.sqrt();
+    let valid = |v: f64| v.max(plane.valid[0]).min(plane.valid[1]);
+    let sum = |v: f64| plane.radial.iter().rev().fold(0.0, |sum, k| sum * v + k);
     let factor = match projection {
-        Projection::Rectilinear => k0 + square * (k1 + square * (k2 + square * k3)),
+        Projection::Rectilinear => sum(valid(radius)),
+        Projection::RectilinearInverse => 1.0 / sum(valid(radius)),
         Projection::Fisheye => {
-            let radius = square.sqrt();
             let angle = radius.atan();
-            let bent = angle * angle;
             // The angle over the radius is 1 in the middle.
             let share = if radius > 1e-9 { angle / radius } else { 1.0 };
-            share * (k0 + bent * (k1 + bent * (k2 + bent * k3)))
+            share * sum(angle)
         }
     };
+    let [t0, t1] = plane.tangential;
     [
         factor * dx + t0 * 2.0 * dx * dy + t1 * (square + 2.0 * dx * dx),
         factor * dy + t1 * 2.0 * dx * dy + t0 * (square + 2.0 * dy * dy),
     ]
 }
 
-/// Whether two sets of coefficients do the same.
-fn alike(one: &[f64; 6], other: &[f64; 6]) -> bool {
-    one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-9)
+/// Whether two planes do the same.
+fn alike(one: &Distortion, other: &Distortion) -> bool {
+    let numbers = |plane: &Distortion| plane.radial.into_iter().chain(plane.tangential);
+    let close = |(a, b): (f64, f64)| (a - b).abs() < 1e-9;
+    numbers(one).zip(numbers(other)).all(close)
 }
