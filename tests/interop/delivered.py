@@ -3,16 +3,19 @@
 
 For three measured cameras, four lights and two charts: a simulated shot (CHART_SHOTS is the example `chart_shots` of the
 package `darkroot-tests`, SPECTRA the folder of spectra), its profile, a TIFF in eciRGB v2 by `develop --look reproduction`, and
-its patches by `verify` and by colour-science against the spectra under the light. The slanted edges of the first TIFF are read
+its patches by `verify`, by colour-science and by Argyll (which knows the classic chart) against the spectra under the light. The slanted edges of the first TIFF are read
 by quickMTF, too. Prints a Markdown table.
 
-Needs colour-science, tifffile and numpy (PyPI), and quickMTF for the edges. Exit code 1 when a mean dE2000 is more than 0.1 above
-the profile's own figure, a grey more than 0.5 L* off, or the two programs more than 0.05 apart.
+Needs colour-science, tifffile and numpy (PyPI), and quickMTF for the edges, scanin and
+profcheck (Debian: argyll). Exit code 1 when a mean dE2000 is more than 0.1 above
+the profile's own figure, a grey more than 0.5 L* off, or two programs more than 0.05 apart.
 """
 import argparse
 import csv
 import json
 import re
+import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -97,6 +100,48 @@ def sfr50(picture, chart):
     return float(np.median(halves))
 
 
+def eci_profile():
+    """eciRGB v2 as an ICC profile of version 2, the newest that Argyll reads, by colour-science's numbers."""
+    number = lambda v: struct.pack(">i", round(v * 65536))
+    xyz = lambda values: b"XYZ \0\0\0\0" + b"".join(map(number, values))
+    matrix = SPACE.matrix_RGB_to_XYZ * (D50 / (SPACE.matrix_RGB_to_XYZ @ np.ones(3)))[:, None]
+    steps = np.clip(np.rint(65535 * SPACE.cctf_decoding(np.linspace(0, 1, 4096))), 0, 65535).astype(">u2")
+    curve = b"curv\0\0\0\0" + struct.pack(">I", 4096) + steps.tobytes()
+    words = b"eciRGB v2\0"
+    named = b"desc\0\0\0\0" + struct.pack(">I", len(words)) + words + bytes(78)
+    tags = {b"desc": named, b"cprt": b"text\0\0\0\0none\0", b"wtpt": xyz(D50)}
+    tags |= {name: xyz(matrix[:, i]) for i, name in enumerate((b"rXYZ", b"gXYZ", b"bXYZ"))}
+    tags |= {name: curve for name in (b"rTRC", b"gTRC", b"bTRC")}
+    table, data, start = b"", b"", 132 + 12 * len(tags)
+    for name, content in tags.items():
+        table += name + struct.pack(">II", start + len(data), len(content))
+        data += content + bytes(-len(content) % 4)
+    head = struct.pack(">I4xI4s4s4s12x4s", start + len(data), 0x02400000, b"mntr", b"RGB ", b"XYZ ", b"acsp")
+    head += bytes(28) + b"".join(map(number, D50)) + bytes(48)
+    return head + struct.pack(">I", len(tags)) + table + data
+
+
+def argyll(folder, chart, labs):
+    """Mean dE2000 of the classic chart's patches by Argyll, which samples the picture and knows the way to Lab."""
+    layout = Path("/usr/share/color/argyll/ref/ColorChecker.cht")
+    if shutil.which("scanin") is None or shutil.which("profcheck") is None or not layout.exists():
+        return None
+    names = [f"{row}{column}" for row in "ABCD" for column in range(1, 7)]
+    lines = [f"{name} {l:.5f} {a:.5f} {b:.5f}" for name, (l, a, b) in zip(names, labs)]
+    (folder / "truth.cie").write_text(
+        "CGATS\n\nNUMBER_OF_FIELDS 4\nBEGIN_DATA_FORMAT\nSAMPLE_ID LAB_L LAB_A LAB_B\nEND_DATA_FORMAT\n\n"
+        "NUMBER_OF_SETS 24\nBEGIN_DATA\n" + "\n".join(lines) + "\nEND_DATA\n")
+    # Middles of patches in the layout's measure, and from there to the picture: where its four marks lie.
+    middles = np.array([[35 + 52.5 * column, 34.5 + 52.5 * row, 1] for row in range(4) for column in range(6)])
+    to_picture = np.linalg.lstsq(middles, np.array(chart["centres"]), rcond=None)[0]
+    marks = np.array([[10, 9.75, 1], [321.25, 9.75, 1], [321.25, 217, 1], [10, 217, 1]]) @ to_picture
+    places = ",".join(f"{v:.2f}" for v in marks.ravel())
+    run("scanin", "-F", places, "-v", "chart.tif", layout, "truth.cie", cwd=folder)
+    (folder / "eci.icc").write_bytes(eci_profile())
+    words = run("profcheck", "-k", "chart.ti3", "eci.icc", cwd=folder)
+    return float(re.search(r"avg\. = ([\d.]+)", words).group(1))
+
+
 def sg140(spectra, into):
     """The SG's spectra row by row."""
     rows = list(csv.reader(open(spectra / "colorchecker_sg_all_380-730_1.csv")))
@@ -107,7 +152,7 @@ def sg140(spectra, into):
 
 
 def delivery(arguments, folder, camera, light, chart, patches):
-    """Own figure of the profile, by verify, by colour-science; the worst grey; the edges by both, where they are asked for."""
+    """Own figure of the profile, by verify, by colour-science, by Argyll (classic chart); the worst grey; the edges by both, where they are asked for."""
     program = arguments.darkroot
     run(arguments.chart_shots, folder, arguments.spectra / f"cam_camspec_{camera}.csv", patches, chart, light, cwd=folder)
     own = run(program, "profile", "chart.dng", "--chart", chart, "--light", light, "--reference", "reference.csv", "-o",
@@ -122,10 +167,11 @@ def delivery(arguments, folder, camera, light, chart, patches):
     pairs = list(zip(truths(folder / "reference.csv", light), found(folder / "chart.tif", place)))
     theirs = float(np.mean([colour.delta_E(lab, truth, method="CIE 2000") for truth, lab in pairs]))
     grey = max(abs(truth[0] - lab[0]) for truth, lab in pairs if np.hypot(*truth[1:]) < 5)
-    edges = None
+    edges, third = None, None
     if chart == "classic24":
         edges = (float(re.search(r"SFR50 ([\d.]+)", words).group(1)), sfr50(folder / "chart.tif", place))
-    return own, ours, theirs, float(grey), edges
+        third = argyll(folder, place, [truth for truth, _ in pairs])
+    return own, ours, theirs, third, float(grey), edges
 
 
 def main():
@@ -138,8 +184,8 @@ def main():
     for name in ("darkroot", "chart_shots", "spectra"):
         setattr(arguments, name, getattr(arguments, name).resolve())
     classic = arguments.spectra / "colorchecker_classic24_babelcolor_380-730_10.csv"
-    print("| camera, light, chart | profile | verify | colour-science | greys, L\\* | SFR50, verify / quickMTF |")
-    print("|---|---|---|---|---|---|")
+    print("| camera, light, chart | profile | verify | colour-science | Argyll | greys, L\\* | SFR50, verify / quickMTF |")
+    print("|---|---|---|---|---|---|---|")
     bad = False
     with tempfile.TemporaryDirectory() as top:
         sg = Path(top) / "sg140.csv"
@@ -149,10 +195,11 @@ def main():
                 for chart, patches in (("classic24", classic), ("sg140", sg)):
                     folder = Path(top) / f"{camera}-{light}-{chart}"
                     folder.mkdir()
-                    own, ours, theirs, grey, edges = delivery(arguments, folder, camera, light, chart, patches)
-                    bad |= ours - own > 0.1 or grey > 0.5 or abs(ours - theirs) > 0.05
+                    own, ours, theirs, third, grey, edges = delivery(arguments, folder, camera, light, chart, patches)
+                    bad |= ours - own > 0.1 or grey > 0.5 or abs(ours - theirs) > 0.05 or third is not None and abs(ours - third) > 0.05
+                    argylls = "–" if third is None else f"{third:.3f}"
                     sharp = "" if edges is None else " / ".join("–" if v is None else f"{v:.3f}" for v in edges)
-                    print(f"| {camera}, {light}, {chart} | {own:.2f} | {ours:.3f} | {theirs:.3f} | {grey:.2f} | {sharp} |", flush=True)
+                    print(f"| {camera}, {light}, {chart} | {own:.2f} | {ours:.3f} | {theirs:.3f} | {argylls} | {grey:.2f} | {sharp} |", flush=True)
     return int(bad)
 
 
