@@ -36,6 +36,9 @@ const USUAL: f64 = 0.1;
 const CLEAREST: f64 = 40.0;
 /// How much clearer one angle must be than another that contradicts it.
 const MUCH: f64 = 4.0;
+/// The same of one half of the picture.
+const CLEAR_IN_HALF: f64 = 4.0;
+const SAME_IN_HALF: f64 = 0.5;
 /// What two angles may differ, degrees, to be the same.
 const SAME: f64 = 0.4;
 /// Rows and columns next to the borders that are not looked at, as a share.
@@ -52,19 +55,34 @@ struct Edges {
 /// The lean of a picture of 300 to 3000 pixels a side in a space with a curve; `None` where nothing is sure.
 pub fn tilt(picture: &Picture) -> Option<Tilt> {
     let light = lightness(picture)?;
-    let [level, upright] = edges(&light, picture.size).map(|edges| peak(&edges));
+    let edges = edges(&light, picture.size);
+    let [level, upright] = [0, 1].map(|kind| peak(&edges[kind].at, edges[kind].span, CLEAR));
     let agree = level.zip(upright).filter(|(a, b)| (a.0 - b.0).abs() <= SAME);
     if let Some((a, b)) = agree {
         let degrees = (a.0 * a.1 + b.0 * b.1) / (a.1 + b.1);
         return Some(Tilt { degrees, clearness: a.1.max(b.1), level: true, upright: true });
     }
-    // Where they contradict each other, one must be much clearer.
-    let single = |found: Option<(f64, f64)>, other: Option<(f64, f64)>, level: bool| {
+    // Where they contradict each other, one must be much clearer; and a wall that is seen from the side has its lines in one half
+    // of the picture, or others in the other.
+    let single = |found: Option<(f64, f64)>, other: Option<(f64, f64)>, kind: usize| {
         let (degrees, clearness) = found?;
         let beside = other.map_or(0.0, |(_, clearness)| clearness);
-        (clearness >= MUCH * beside).then_some(Tilt { degrees, clearness, level, upright: !level })
+        let all_over = edges[kind].halves().iter().all(|half| {
+            let found = peak(half, edges[kind].span, CLEAR_IN_HALF);
+            found.is_some_and(|(of_half, _)| (of_half - degrees).abs() <= SAME_IN_HALF)
+        });
+        let found = Tilt { degrees, clearness, level: kind == 0, upright: kind == 1 };
+        (all_over && clearness >= MUCH * beside).then_some(found)
     };
-    single(level, upright, true).or_else(|| single(upright, level, false))
+    single(level, upright, 0).or_else(|| single(upright, level, 1))
+}
+
+impl Edges {
+    /// Those before the middle along the direction in which they run, and those behind it.
+    fn halves(&self) -> [Vec<[f32; 4]>; 2] {
+        let (before, behind) = self.at.iter().partition(|[along, ..]| *along < 0.0);
+        [before, behind]
+    }
 }
 
 fn lightness(picture: &Picture) -> Option<Vec<f32>> {
@@ -109,12 +127,12 @@ fn edges(light: &[f32], Size { width, height }: Size) -> [Edges; 2] {
 }
 
 /// The angle of most lines, degrees clockwise to turn, and how far it stands out.
-fn peak(edges: &Edges) -> Option<(f64, f64)> {
-    if edges.at.len() < 2 * edges.span {
+fn peak(edges: &[[f32; 4]], span: usize, least: f64) -> Option<(f64, f64)> {
+    if edges.len() < span {
         return None;
     }
     let angle = |i: usize| i as f64 * STEP - MOST;
-    let scores: Vec<f64> = (0..ANGLES).map(|i| concentration(edges, angle(i))).collect();
+    let scores: Vec<f64> = (0..ANGLES).map(|i| concentration(edges, span, angle(i))).collect();
     let best = (1..ANGLES - 1).max_by(|a, b| scores[*a].total_cmp(&scores[*b]))?;
     let mut sorted = scores.clone();
     sorted.sort_by(f64::total_cmp);
@@ -125,18 +143,18 @@ fn peak(edges: &Edges) -> Option<(f64, f64)> {
     // The top of the parabola through three.
     let bend = before - 2.0 * at + after;
     let within = if bend < 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
-    (clearness >= CLEAR && best > 2 && best < ANGLES - 3)
+    (clearness >= least && best > 2 && best < ANGLES - 3)
         .then_some((-(angle(best) + within.clamp(-0.5, 0.5) * STEP), clearness))
 }
 
 /// How much of the edges falls together when they are projected along an angle.
-fn concentration(edges: &Edges, degrees: f64) -> f64 {
+fn concentration(edges: &[[f32; 4]], span: usize, degrees: f64) -> f64 {
     let (sine, cosine) = degrees.to_radians().sin_cos();
     let (sine, cosine) = (sine as f32, cosine as f32);
-    let middle = edges.span as f32;
-    let mut sums = vec![0f64; 2 * edges.span + 2];
+    let middle = span as f32;
+    let mut sums = vec![0f64; 2 * span + 2];
     // Edges that run another way are no part of a line: round things would have most at 0.
-    let same_way = edges.at.iter().filter(|[.., own]| (own - degrees as f32).abs() < SPREAD);
+    let same_way = edges.iter().filter(|[.., own]| (own - degrees as f32).abs() < SPREAD);
     for [u, v, weight, _] in same_way {
         let place = (v * cosine - u * sine + middle).max(0.0);
         let (i, part) = (place as usize, place.fract());
@@ -233,6 +251,17 @@ mod tests {
         let round = picture(|x, y| 90.0 + 60.0 * band(x.hypot(y), 25.0));
         assert_eq!(tilt(&round), None);
         assert_eq!(tilt(&picture(|_, _| 128.0)), None);
+    }
+
+    #[test]
+    fn a_wall_that_is_seen_from_the_side_is_no_horizon() {
+        // All its lines go to one point far on the right.
+        let wall = picture(|x, y| 160.0 - 90.0 * band((y - 40.0) * 700.0 / (700.0 - x), 20.0));
+        assert_eq!(tilt(&wall), None);
+        // A board in one half of the picture.
+        let turned = leaning(4.0);
+        let board = picture(|x, y| 160.0 - 90.0 * edge(turned(x, y).1) * edge(x - 20.0));
+        assert_eq!(tilt(&board), None);
     }
 
     #[test]

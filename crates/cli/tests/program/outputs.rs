@@ -87,7 +87,7 @@ fn a_template_with_a_wrong_placeholder_is_refused() {
 #[test]
 fn an_ending_that_names_no_format_is_refused() {
     let desk = Desk::with_dng();
-    for name in ["o.bmp", "o", "o.dng", "{stem}"] {
+    for name in ["o.bmp", "o", "o.nef", "{stem}"] {
         desk.fails(2, &["develop", "a.dng", "-o", name], &["ending", ".jpg", "--format"]);
     }
     assert_eq!(desk.names(), ["a.dng"]);
@@ -156,7 +156,7 @@ fn an_output_over_its_own_input_is_refused() {
     let desk = Desk::with_dng();
     desk.put("sub/x.dng", small_dng());
     for output in ["a.dng", "./a.dng", "sub/../a.dng", "{stem}.dng"] {
-        let arguments = ["develop", "a.dng", "--overwrite", "--format", "jpeg", "-o", output];
+        let arguments = ["develop", "a.dng", "--overwrite", "--format", "dng", "-o", output];
         desk.fails(2, &arguments, &["would be overwritten"]);
     }
     assert_eq!(desk.read("a.dng"), small_dng());
