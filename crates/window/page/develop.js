@@ -8,7 +8,7 @@ import { ExportPanel } from "./export.js";
 import { Histogram } from "./histogram.js";
 import { Picture } from "./picture.js";
 import { Readout } from "./readout.js";
-import { clipboard, draft as draftOf, hasDraft } from "./edits.js";
+import { clipboard, draft as draftOf, hasDraft, unsaved } from "./edits.js";
 import { files } from "./files.js";
 
 let root, go, picture, controls, histogram, readout, exports, table;
@@ -22,11 +22,11 @@ const parts = {};
 /** Settings that say where the picture lies in the frame: what is before the edits lies there, too. */
 const geometry = () => table.filter((one) => one.section === "Geometry").map((one) => one.name);
 
-const asked = () => ({ file: draft.file, edits: draft.edits, uncropped: tool instanceof CropTool });
+const asked = () => ({ file: files.current, edits: draft?.edits ?? unsaved(files.current), uncropped: tool instanceof CropTool });
 const askedBefore = () => {
   const names = new Set(geometry());
-  const edits = Object.fromEntries(Object.entries(draft.edits).filter(([name]) => names.has(name)));
-  return { file: draft.file, edits, uncropped: tool instanceof CropTool };
+  const edits = Object.fromEntries(Object.entries(draft?.edits ?? {}).filter(([name]) => names.has(name)));
+  return { ...asked(), edits };
 };
 
 export async function build(element, routes, described) {
@@ -100,6 +100,7 @@ export async function show(file) {
   }
   draft?.removeEventListener("change", changed);
   draft?.removeEventListener("commit", committed);
+  draft = null;
   notice.clear();
   saved.clear();
   exports.close();
@@ -111,6 +112,9 @@ export async function show(file) {
   parts.name.textContent = baseName(file);
   parts.name.title = shown(file.slice(file.indexOf("/") + 1));
   parts.empty.hidden = true;
+  strip();
+  // A coarse picture is on its way before the page knows the edits: the server does.
+  const first = picture.update(true);
   try {
     const loaded = await draftOf(file);
     if (files.current !== file) return;
@@ -119,13 +123,12 @@ export async function show(file) {
     draft.addEventListener("commit", committed);
     controls.show(draft);
     committed();
-    picture.update();
+    await first;
+    if (files.current === file) picture.update();
   } catch (error) {
-    draft = null;
     fault(error);
   }
   facts(file);
-  strip();
 }
 
 async function facts(file) {

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use darkroot::{Analysis, Photo, ProfileStore, Settings};
 use darkroot_batch::facts::modified;
-use darkroot_develop::Look;
+use darkroot_develop::{Kept, Look};
 
 use crate::fault::Fault;
 use crate::roots::Place;
@@ -21,6 +21,8 @@ const SAMPLES: usize = 250_000_000;
 pub(crate) struct Open {
     pub(crate) photo: Photo,
     pub(crate) analysis: Analysis,
+    /// The view of the whole that was rendered last, as far as a slider may leave it as it is.
+    pub(crate) kept: Kept,
     /// What its picture was developed from.
     pub(crate) path: PathBuf,
 }
@@ -111,5 +113,5 @@ fn decode(place: &Place, store: &ProfileStore, settings: &Settings) -> Result<Op
     let bytes = place.read()?;
     let photo = darkroot::job::opened(&place.path, &bytes, settings, store)?;
     let analysis = photo.analyse_as_asked();
-    Ok(Open { photo, analysis, path: place.path.clone() })
+    Ok(Open { photo, analysis, kept: Kept::default(), path: place.path.clone() })
 }

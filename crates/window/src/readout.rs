@@ -39,7 +39,7 @@ pub(crate) fn spot(
     let seen = shown(settings.clone(), gamut);
     // The white of all of them is that of the picture as it is shown.
     let plan = plan(open, store, &seen)?;
-    let balance = Balance::Multipliers(plan.multipliers.map(f64::from));
+    let balance = Balance::Multipliers(plan.multipliers().map(f64::from));
     let measured = |space: OutputSpace, look: Look| {
         let mut other = seen.clone();
         let recipe = &mut other.recipe;

@@ -294,8 +294,8 @@ fn plan(
         profile: chosen.filter(|c| !camera_output && !c.estimated).map(|c| c.place.clone().into_owned()),
         kelvin: plan.white.map(|w| w.kelvin),
         tint: plan.white.map(|w| w.tint()),
-        multipliers: plan.multipliers,
-        demosaic: plan.demosaic.name().to_owned(),
+        multipliers: plan.multipliers(),
+        demosaic: plan.demosaic().name().to_owned(),
         gain: plan.gain,
         notes,
         ..blank_report(input, capture, plan.size(), &plan.picture_space(), recipe.output.bits)
