@@ -1,7 +1,7 @@
 // Developing one photograph: the picture, the controls, and what the picture tells.
 
 import { address, post } from "./server.js";
-import { baseName, fill, h, isTyping, newestOnly, Notice, shown } from "./elements.js";
+import { baseName, fill, h, isTyping, newestOnly, Notice, painted, shown } from "./elements.js";
 import { Controls } from "./controls.js";
 import { CropTool } from "./crop.js";
 import { ExportPanel } from "./export.js";
@@ -124,6 +124,8 @@ export async function show(file) {
     controls.show(draft);
     committed();
     await first;
+    // The coarse one is to be on the screen before the processor is busy with the next.
+    await painted();
     if (files.current === file) picture.update();
   } catch (error) {
     fault(error);

@@ -18,11 +18,13 @@ use crate::state::locked;
 const LONGEST: u32 = 640;
 /// An embedded picture of at least that side is looked for, pixels.
 const ENOUGH: u32 = 300;
+/// The same where it is to be there at once: the thumbnails of most cameras have 160 x 120 pixels.
+const ENOUGH_AT_ONCE: u32 = 120;
 /// Bytes of all that are kept.
 const KEPT: usize = 64 << 20;
 
-/// A small picture of a file as it was.
-type Identity = (String, u64, i64);
+/// A small picture of a file as it was, and whether it was to be there at once.
+type Identity = (String, u64, i64, bool);
 
 /// Small pictures that are kept, JPEG; those that were made first go first.
 #[derive(Default)]
@@ -36,16 +38,22 @@ struct Kept {
 }
 
 impl Smalls {
-    /// The small picture of a file, a JPEG in sRGB.
-    pub(crate) fn of(&self, name: &str, place: &Place, store: &ProfileStore) -> Result<Arc<[u8]>, Fault> {
+    /// The small picture of a file, a JPEG in sRGB; `at_once` a coarse one will do.
+    pub(crate) fn of(
+        &self,
+        name: &str,
+        place: &Place,
+        store: &ProfileStore,
+        at_once: bool,
+    ) -> Result<Arc<[u8]>, Fault> {
         let data = std::fs::metadata(&place.path)
             .map_err(|e| Fault::missing(format!("{}: cannot be read: {e}", darkroot::shown(&place.path))))?;
-        let identity = (name.to_owned(), data.len(), modified(&data));
+        let identity = (name.to_owned(), data.len(), modified(&data), at_once);
         if let Some(picture) = locked(&self.0).pictures.get(&identity) {
             return Ok(Arc::clone(picture));
         }
         let bytes = place.read().map_err(|e| Fault::unusable(e.to_string()))?;
-        let picture: Arc<[u8]> = match embedded(&bytes) {
+        let picture: Arc<[u8]> = match embedded(&bytes, if at_once { ENOUGH_AT_ONCE } else { ENOUGH }) {
             Some(jpeg) => jpeg,
             None => developed(&bytes, place, store)?,
         }
@@ -68,10 +76,10 @@ impl Kept {
     }
 }
 
-/// The smallest embedded picture that is large enough, upright and no larger than it must be. `None` where there is none, or
+/// The smallest embedded picture whose longest side has `enough` pixels, upright and no larger than it must be. `None` where there is none, or
 /// none that is sound.
-fn embedded(bytes: &[u8]) -> Option<Vec<u8>> {
-    let preview = darkroot_raw::preview_to_show(bytes, ENOUGH).ok()??;
+fn embedded(bytes: &[u8], enough: u32) -> Option<Vec<u8>> {
+    let preview = darkroot_raw::preview_to_show(bytes, enough).ok()??;
     let fits = preview.size.width.max(preview.size.height) <= LONGEST as usize;
     if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
         return Some(preview.jpeg);

@@ -161,6 +161,7 @@ pub fn develop_into(
         })?;
     }
     notes.append(&mut report.notes);
+    notes.extend(settings.about.left_out.clone());
     notes.dedup();
     Ok(Report {
         output: output.clone(),
