@@ -112,7 +112,7 @@ export async function show(file) {
   parts.name.textContent = baseName(file);
   parts.name.title = shown(file.slice(file.indexOf("/") + 1));
   parts.empty.hidden = true;
-  strip();
+  strip(false);
   // A coarse picture is on its way before the page knows the edits: the server does.
   const first = picture.update(true);
   try {
@@ -126,10 +126,12 @@ export async function show(file) {
     await first;
     // The coarse one is to be on the screen before the processor is busy with the next.
     await painted();
-    if (files.current === file) picture.update();
+    if (files.current !== file) return;
+    picture.update();
   } catch (error) {
     fault(error);
   }
+  strip();
   facts(file);
 }
 
@@ -143,14 +145,14 @@ async function facts(file) {
   parts.facts.title = parts.facts.textContent;
 }
 
-/** The photographs before and after this one. */
-function strip() {
+/** The photographs before and after this one; only their places while something else is wanted first. */
+function strip(withPictures = true) {
   const all = files.shown.length ? files.shown : files.all;
   const at = all.findIndex((one) => one.file === files.current);
   const near = at < 0 ? [] : all.slice(Math.max(0, at - 8), at + 9);
   fill(parts.strip, near.map(({ file, modified }) =>
     h("button", { class: `small ${file === files.current ? "now" : ""} ${hasDraft(file) ? "draft" : ""}`, title: baseName(file), "aria-label": baseName(file), "aria-current": file === files.current ? "true" : null, onclick: () => go.develop(file) },
-      h("img", { src: address("small", { file, v: modified }), alt: "", decoding: "async", draggable: false, onerror: (e) => { e.target.dataset.broken = ""; } }))));
+      h("img", { src: withPictures ? address("small", { file, v: modified }) : null, alt: "", decoding: "async", draggable: false, onerror: (e) => { e.target.dataset.broken = ""; } }))));
   parts.strip.hidden = near.length < 2;
   parts.strip.querySelector(".now")?.scrollIntoView({ block: "nearest", inline: "center" });
 }

@@ -124,7 +124,11 @@ impl Effective {
     pub fn texts(&self) -> BTreeMap<String, String> {
         let beside = [(SAID, &self.said), (LEFT_OUT, &self.left_out)];
         let beside = beside.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text.clone()?)));
-        self.values.iter().map(|(key, (text, _))| (key.name().to_owned(), text.clone())).chain(beside).collect()
+        self.values
+            .iter()
+            .map(|(key, (text, _))| (key.name().to_owned(), text.clone()))
+            .chain(beside)
+            .collect()
     }
 
     /// What [`texts`](Self::texts) gave; keys that are missing have their defaults. Where the values were from
@@ -140,8 +144,7 @@ impl Effective {
         let settings = texts.iter().filter(|(name, _)| ![SAID, LEFT_OUT].contains(&name.as_str()));
         let values: Vec<(Key, String)> = settings.map(named).collect::<Result<_, RecipeError>>()?;
         let beside = |name| texts.get(name).cloned();
-        let mut effective =
-            Self { said: beside(SAID), left_out: beside(LEFT_OUT), ..Self::default() };
+        let mut effective = Self { said: beside(SAID), left_out: beside(LEFT_OUT), ..Self::default() };
         effective.lay(&Layer::flags(values)?);
         Ok(effective)
     }

@@ -147,12 +147,7 @@ fn plan(shared: &Shared, open: &Open, settings: &Settings) -> Result<Plan, Fault
 }
 
 /// What a view is rendered by. A quick one is coarse, unless what is kept of it serves.
-fn planned(
-    shared: &Shared,
-    open: &Open,
-    settings: Settings,
-    wanted: &Wanted,
-) -> Result<(Plan, View), Fault> {
+fn planned(shared: &Shared, open: &Open, settings: Settings, wanted: &Wanted) -> Result<(Plan, View), Fault> {
     let by = |settings: &Settings| {
         let plan = plan(shared, open, settings)?;
         let view = view(&plan, wanted)?;
