@@ -106,7 +106,7 @@ pub(crate) fn fields(metadata: &Metadata) -> impl Iterator<Item = &Field> {
 }
 
 /// The fields of the shot together with what the fields of the file must say of this picture: its size and
-/// whether it is in sRGB, and what a JPEG must say. No fields stay no fields.
+/// whether it is in sRGB, and what a JPEG must say beside that. No fields stay no fields.
 pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, format: Format) -> Metadata {
     let mut metadata = metadata.clone();
     if fields(&metadata).next().is_none() {
@@ -118,8 +118,12 @@ pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, 
     };
     let mut set = |tag, value| metadata.set(Directory::Exif, tag, value);
     set(tag::COLOUR_SPACE, Value::Shorts(vec![if srgb { 1 } else { UNCALIBRATED }]));
-    set(PIXEL_X_DIMENSION, Value::Longs(vec![size.width as u32]));
-    set(PIXEL_Y_DIMENSION, Value::Longs(vec![size.height as u32]));
+    set(FLASHPIX_VERSION, Value::Undefined(b"0100".to_vec()));
+    // TIFF has the size in fields of its own (Exif 2.32, table 20).
+    if format != Format::Tiff {
+        set(PIXEL_X_DIMENSION, Value::Longs(vec![size.width as u32]));
+        set(PIXEL_Y_DIMENSION, Value::Longs(vec![size.height as u32]));
+    }
     if metadata.get(Directory::Exif, EXIF_VERSION).is_none() {
         metadata.set(Directory::Exif, EXIF_VERSION, Value::Undefined(b"0232".to_vec()));
     }
@@ -139,7 +143,6 @@ fn required_of_jpeg(metadata: &mut Metadata) {
         (Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH])),
         (Directory::Image, YCBCR_POSITIONING, Value::Shorts(vec![CENTRED])),
         (Directory::Exif, COMPONENTS, Value::Undefined(vec![1, 2, 3, 0])),
-        (Directory::Exif, FLASHPIX_VERSION, Value::Undefined(b"0100".to_vec())),
     ];
     for (directory, tag, value) in required {
         if metadata.get(directory, tag).is_none() {
