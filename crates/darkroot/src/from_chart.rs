@@ -24,7 +24,7 @@ const OTHER_EXPOSURE: f64 = 0.05;
 
 /// What a shot of a chart tells.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Told {
+pub struct Told {
     /// The shot.
     pub(crate) path: PathBuf,
     /// SHA-256 of its file; empty where it is the photograph itself.

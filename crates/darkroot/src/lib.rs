@@ -27,6 +27,7 @@ pub mod recipe;
 pub use recipe::{Effective, Layer, Layers, Origin, RecipeError};
 
 pub mod photo;
+mod planned;
 pub use photo::{Photo, PlanError};
 
 pub mod naming;
@@ -41,6 +42,7 @@ pub use frames::FrameFault;
 pub mod lut;
 
 mod from_chart;
+pub use from_chart::Told as ToldByChart;
 mod provenance;
 
 pub mod inspect;

@@ -98,10 +98,11 @@ export function later(milliseconds, work) {
   };
 }
 
-/** Waits until what was changed on the page can be seen; a page that is not shown waits for nothing. */
+/** Waits until what was changed on the page is on the screen: the second frame begins when the first is there. A page that is
+ * not shown waits for nothing. */
 export function painted() {
   if (document.hidden) return Promise.resolve();
-  return new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
 }
 
 /** Whether a key goes to a field that takes it. */

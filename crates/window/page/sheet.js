@@ -17,7 +17,7 @@ const REFINED_AT_ONCE = 3;
 /** Coarse pictures, and those that are on their way. */
 const refined = [];
 const waited = new Set();
-let width = 190;
+let width = innerWidth < 2800 ? 190 : 280;
 let columns = 1;
 let focused = 0;
 let anchor = 0;

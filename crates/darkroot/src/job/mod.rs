@@ -15,6 +15,7 @@ use crate::files::{self, Failed, Output};
 use crate::from_chart::Told;
 use crate::metadata::{About, of_picture};
 use crate::photo::Photo;
+use crate::planned::planned;
 use crate::settings::{Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
 use crate::{Error, Job, from_chart, lut, provenance};
@@ -259,33 +260,12 @@ fn plan(
     recipe: &Recipe,
     told: Option<&Told>,
 ) -> Result<(Plan, Report), Error> {
-    let mut recipe = recipe.clone();
     let profile = chosen.map(|c| c.profile.as_ref());
-    if let Some(told) = told {
-        told.check(input, photo.capture())?;
-        if settings.chart.balance {
-            recipe.balance = told.balance(None);
-        }
-    }
     let analysis = photo.analyse_as_asked();
-    let planned = |recipe: &Recipe| {
-        let plan = photo.plan_with(&analysis, profile, recipe.clone());
-        plan.map_err(|source| Error::Plan { path: input.to_owned(), source })
-    };
-    let mut plan = planned(&recipe)?;
-    if let Some(told) = told.filter(|_| settings.chart.balance) {
-        // The white tells the light, and that how the greys look in it.
-        let light =
-            provenance::light_of(settings, profile, &plan).and_then(|name| provenance::by_name(&name));
-        recipe.balance = told.balance(light.as_ref());
-        plan = planned(&recipe)?;
-    }
+    let plan = planned(input, photo, &analysis, chosen, settings, recipe, told)?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();
     let mut notes = plan.notes.clone();
-    if let Some(told) = told {
-        notes.extend(told.expose(&mut plan, recipe.exposure.stops, capture));
-    }
     if !camera_output && settings.light.is_none() {
         notes.extend(profile.zip(plan.white).and_then(|(profile, white)| far_light(profile, white)));
     }

@@ -142,8 +142,7 @@ pub(crate) fn opened(shared: &Shared, edited: &Edited) -> Result<(Arc<Open>, Set
 }
 
 fn plan(shared: &Shared, open: &Open, settings: &Settings) -> Result<Plan, Fault> {
-    let plan = open.photo.plan(&open.analysis, &shared.store(), settings);
-    plan.map_err(|e| Fault::unusable(format!("{}: {e}", darkroot::shown(&open.path))))
+    open.plan(&shared.store(), settings)
 }
 
 /// What a view is rendered by. A quick one is coarse, unless what is kept of it serves.
