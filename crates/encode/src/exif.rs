@@ -16,6 +16,11 @@ use crate::Format;
 /// The orientation in the block is always 1, as the pixels are upright already. Fields that say how another
 /// file stores its pixels, and fields without a value, are left out. Text keeps its UTF-8 bytes.
 pub fn block(metadata: &Metadata) -> Vec<u8> {
+    with_thumbnail(metadata, None)
+}
+
+/// The same with a JPEG as thumbnail.
+pub(crate) fn with_thumbnail(metadata: &Metadata, thumbnail: Option<&[u8]>) -> Vec<u8> {
     let fields: Vec<exif::Field> = fields(metadata)
         .filter(|field| !has_own_place(field))
         .map(|field| exif::Field {
@@ -35,12 +40,30 @@ pub fn block(metadata: &Metadata) -> Vec<u8> {
     let mut writer = Writer::new();
     writer.push_field(&upright);
     fields.iter().for_each(|field| writer.push_field(field));
+    let of_thumbnail = thumbnail_fields();
+    if let Some(jpeg) = thumbnail {
+        of_thumbnail.iter().for_each(|field| writer.push_field(field));
+        writer.set_jpeg(jpeg, In::THUMBNAIL);
+    }
     let mut block = Cursor::new(Vec::new());
     match writer.write(&mut block, true) {
         Ok(()) => block.into_inner(),
         // Left are blocks of 4 GB and more.
         Err(_) => Vec::new(),
     }
+}
+
+/// What a thumbnail must state (Exif 2.32, table 21): that it is a JPEG, and a resolution.
+fn thumbnail_fields() -> [exif::Field; 4] {
+    const JPEG: u16 = 6;
+    let resolution = exif::Value::Rational(vec![Rational { num: UNKNOWN, denom: 1 }]);
+    [
+        (Tag::Compression, exif::Value::Short(vec![JPEG])),
+        (Tag::XResolution, resolution.clone()),
+        (Tag::YResolution, resolution),
+        (Tag::ResolutionUnit, exif::Value::Short(vec![INCH])),
+    ]
+    .map(|(tag, value)| exif::Field { tag, ifd_num: In::THUMBNAIL, value })
 }
 
 /// What a finished picture states of itself.

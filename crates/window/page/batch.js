@@ -51,6 +51,8 @@ export function build(element, routes) {
       parts.detail));
 }
 
+files.addEventListener("change", () => { if (root) collisions(); });
+
 /** Shows the view; `only` names files that are to be developed. */
 export async function show(only, given) {
   if (only) chosen = only;
@@ -71,8 +73,12 @@ export async function show(only, given) {
   }
 }
 
+let listed = null;
+
 /** Offers what can become of files whose pictures would have one name, where there are some. */
 function collisions() {
+  if (files.all === listed) return;
+  listed = files.all;
   const kinds = new Map();
   for (const { file } of files.all) {
     const [, stem, ending] = /^(.*)\.([^./]*)$/.exec(file.toLowerCase()) ?? [null, file, ""];

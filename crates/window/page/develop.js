@@ -101,6 +101,7 @@ export async function show(file) {
   draft?.removeEventListener("change", changed);
   draft?.removeEventListener("commit", committed);
   draft = null;
+  delete root.dataset.file;
   notice.clear();
   saved.clear();
   exports.close();
@@ -123,6 +124,7 @@ export async function show(file) {
     draft.addEventListener("commit", committed);
     controls.show(draft);
     committed();
+    root.dataset.file = file;
     await first;
     // The coarse one is to be on the screen before the processor is busy with the next.
     await painted();

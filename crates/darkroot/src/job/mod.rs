@@ -13,7 +13,7 @@ use darkroot_photo::{Capture, Metadata, Picture};
 
 use crate::files::{self, Failed, Output};
 use crate::from_chart::Told;
-use crate::metadata::{About, of_picture};
+use crate::metadata::{About, Keep, of_picture};
 use crate::photo::Photo;
 use crate::planned::planned;
 use crate::settings::{Engine, Settings};
@@ -158,7 +158,7 @@ pub fn develop_into(
             seen(&picture);
         }
         write_file(to, job, settings, |out| {
-            Ok(darkroot_encode::write(&picture, format, &settings.encode, &metadata, out)?)
+            Ok(darkroot_encode::write(&picture, format, &encoding(job, settings), &metadata, out)?)
         })?;
     }
     notes.append(&mut report.notes);
@@ -204,12 +204,18 @@ fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sampl
 ) -> Result<(), Error> {
     let outline = Outline { size: plan.size(), space: plan.picture_space() };
     write_file(to, job, settings, |out| {
-        darkroot_encode::write_in_bands(&outline, format, &settings.encode, metadata, out, |rows, take| {
+        darkroot_encode::write_in_bands(&outline, format, &encoding(job, settings), metadata, out, |rows, take| {
             plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[T]| {
                 Ok(take(band, samples)?)
             })
         })
     })
+}
+
+/// How a picture is encoded: with a thumbnail where it says all that it can, and where the output has a beginning to go back to.
+fn encoding(job: &Job, settings: &Settings) -> darkroot_encode::Options {
+    let thumbnail = settings.about.keep == Keep::All && !files::is_stream(&job.output);
+    darkroot_encode::Options { thumbnail, ..settings.encode }
 }
 
 /// Writes the output through `fill`, whole or not at all.

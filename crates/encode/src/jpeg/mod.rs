@@ -8,10 +8,11 @@ mod entropy;
 mod header;
 mod progressive;
 mod tables;
+mod thumbnail;
 mod transform;
 mod units;
 
-use std::io::Write;
+use std::io::{Seek, Write};
 
 use darkroot_photo::Metadata;
 use darkroot_photo::metadata::Directory;
@@ -22,6 +23,7 @@ use crate::output::Buffered;
 use crate::{Error, Options, Sample, exif};
 
 use header::{END, Header};
+use thumbnail::Thumbnail;
 use units::{Scan, Subsampling};
 
 /// Bytes that a segment has for Exif: 65535, less its length (2) and "Exif\0\0" (6).
@@ -44,29 +46,52 @@ pub(crate) fn write<T: Sample>(
     let units = size.width.div_ceil(subsampling.width());
     let high = (BAND_ROWS / subsampling.height()).min(usize::from(u16::MAX) / units).max(1);
     let rows = high * subsampling.height();
+    let block = block_that_fits(metadata)?;
+    let mut thumbnail = Thumbnail::of(*size, space).filter(|_| options.thumbnail && !block.is_empty());
+    let with_place = thumbnail.as_ref().map(|_| exif::with_thumbnail(metadata, Some(&Thumbnail::place())));
+    if with_place.as_ref().is_some_and(|block| block.len() > EXIF_LIMIT) {
+        thumbnail = None;
+    }
     let header = Header {
         size: *size,
         subsampling,
         quality: options.quality,
         restart: if size.height > rows { (units * high) as u16 } else { 0 },
         profile: &profile_of(space),
-        exif: &block_that_fits(metadata)?,
+        exif: with_place.as_ref().filter(|_| thumbnail.is_some()).unwrap_or(&block),
         xmp: exif::xmp(metadata),
         iptc: exif::iptc(metadata),
     };
+    let seen = |band: usize, samples: &[u8]| {
+        if let Some(thumbnail) = &thumbnail {
+            thumbnail.add(band * rows, size.width, samples);
+        }
+    };
+    // Where nothing is filled in later, the output need not know where it is.
+    let start = thumbnail.as_ref().map_or(Ok(0), |_| out.stream_position()).map_err(Error::Io)?;
+    let begin = if options.progressive { header.about() } else { header.bytes() };
+    out.write_all(&begin).map_err(Error::Io)?;
     if options.progressive {
-        out.write_all(&header.about()).map_err(Error::Io)?;
         let whole = Vec::with_capacity(3 * size.area());
-        let keep = |_, samples: &[T]| Ok(bytemuck::cast_slice::<T, u8>(samples).to_vec());
+        let keep = |band, samples: &[T]| {
+            let samples = bytemuck::cast_slice::<T, u8>(samples);
+            seen(band, samples);
+            Ok(samples.to_vec())
+        };
         let whole = bands::code(*size, rows, Whole(whole), keep, make)?;
         let scans = progressive::scans(*size, &whole.0, options)?;
-        return out.write_all(&scans).map_err(Error::Io);
+        out.write_all(&scans).map_err(Error::Io)?;
+    } else {
+        let scan = Scan::new(subsampling, options.quality);
+        let code = |band, samples: &[T]| {
+            let samples = bytemuck::cast_slice(samples);
+            seen(band, samples);
+            Ok(scan.encode(samples, size.width))
+        };
+        bands::code(*size, rows, RestartMarkers { out: &mut *out, next: None }, code, make)?;
+        out.write_all(&END).map_err(Error::Io)?;
     }
-    out.write_all(&header.bytes()).map_err(Error::Io)?;
-    let scan = Scan::new(subsampling, options.quality);
-    let code = |_, samples: &[T]| Ok(scan.encode(bytemuck::cast_slice(samples), size.width));
-    let scan = bands::code(*size, rows, RestartMarkers { out, next: None }, code, make)?;
-    scan.out.write_all(&END).map_err(Error::Io)
+    thumbnail.map_or(Ok(()), |thumbnail| thumbnail.fill(&begin, start, out))
 }
 
 /// All samples.
