@@ -25,8 +25,7 @@ const geometry = () => table.filter((one) => one.section === "Geometry").map((on
 const asked = () => ({ file: files.current, edits: draft?.edits ?? unsaved(files.current), uncropped: tool instanceof CropTool });
 const askedBefore = () => {
   const names = new Set(geometry());
-  const edits = Object.fromEntries(Object.entries(draft?.edits ?? {}).filter(([name]) => names.has(name)));
-  return { ...asked(), edits };
+  return { ...asked(), edits: Object.fromEntries(Object.entries(draft?.edits ?? {}).filter(([name]) => names.has(name))) };
 };
 
 export async function build(element, routes, described) {
