@@ -234,7 +234,7 @@ fn write_bytes<W: Write + Seek, K: TiffKind>(
     bytes: &[u8],
 ) -> Result<(), TiffError> {
     let entry: Entry = entries.write_entry_bytes(kind, bytes)?;
-    if bytes.len() > size_of::<K::OffsetType>() && bytes.len() % EVEN != 0 {
+    if bytes.len() > size_of::<K::OffsetType>() && !bytes.len().is_multiple_of(EVEN) {
         entries.write_data(&[0_u8][..])?;
     }
     entries.extend_from(&Entries::from_iter([(Tag::from_u16_exhaustive(tag), entry)]));
