@@ -2,6 +2,9 @@
 """What exiftool shows of raw files and means something in a picture is in what Darkroot makes of them, with the same value.
 
     python3 tests/interop/metadata.py PROGRAM FILE...
+    python3 tests/interop/metadata.py --peers PROGRAM FILE...
+
+The second counts beside those of Darkroot the fields that RawTherapee and darktable keep, where they are installed.
 
 Says which fields are lost or changed, and what `exiftool -validate` says of the pictures. Passes without exiftool."""
 import json
@@ -36,10 +39,50 @@ def fields(path):
     return found
 
 
+def developed(program, raw, out):
+    """Makes a JPEG as each program makes it by default; whether it did."""
+    commands = {
+        "rawtherapee": ["rawtherapee-cli", "-q", "-Y", "-d", "-o", out, "-j90", "-c", raw],
+        "darktable": ["darktable-cli", raw, out, "--core", "--configdir", out.parent / "dt", "--library", ":memory:"],
+    }
+    command = commands.get(program, [program, "develop", raw, "-q", "-o", out, "--overwrite"])
+    subprocess.run(command, capture_output=True, timeout=300)
+    return out.exists()
+
+
+def lens_and_numbers(path):
+    """How many of lens, serial number of camera and of lens are told outside of maker notes."""
+    names = ["LensModel", "SerialNumber", "LensSerialNumber"]
+    said = subprocess.run(["exiftool", "-j", "-G1", "-a", *(f"-{name}" for name in names), str(path)], capture_output=True, text=True)
+    keys = {key for key in json.loads(said.stdout)[0] if key.startswith(("ExifIFD:", "XMP-"))}
+    return sum(any(key.endswith(f":{name}") for key in keys) for name in names)
+
+
+def peers(program, files):
+    others = [name for name, command in [("rawtherapee", "rawtherapee-cli"), ("darktable", "darktable-cli")] if shutil.which(command)]
+    print("| raw file | fields | " + " | ".join(["Darkroot", *others]) + " |")
+    print("|---|---|" + "---|" * (1 + len(others)))
+    with tempfile.TemporaryDirectory() as folder:
+        for raw in map(Path, files):
+            before, row = fields(raw), []
+            for name in [program, *others]:
+                out = Path(folder) / f"{raw.stem}-{Path(name).name}.jpg"
+                if not developed(name, raw, out):
+                    row.append("no picture")
+                    continue
+                after = fields(out)
+                kept = sum(bool(n in after and before[n] & after[n]) for n in before)
+                row.append(f"{kept}, {lens_and_numbers(out)} of lens and numbers")
+            print(f"| {raw.name} | {len(before)} | " + " | ".join(row) + " |", flush=True)
+    return 0
+
+
 def main():
     if not shutil.which("exiftool"):
         print("skipped: exiftool is not there")
         return 0
+    if sys.argv[1] == "--peers":
+        return peers(sys.argv[2], sys.argv[3:])
     program, wrong = sys.argv[1], 0
     with tempfile.TemporaryDirectory() as folder:
         for raw in map(Path, sys.argv[2:]):

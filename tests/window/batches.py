@@ -51,19 +51,30 @@ def test_batch_of_a_terminal_is_watched(bench):
                     page.wait_for_timeout(50)
                 page.reload()
                 page.click("#batch .journals >> text=out")
-                page.wait_for_selector("#batch .figures dd:text-is('16')", timeout=120_000)
+                page.wait_for_selector("#batch .figures dd:text-is('16 of 16')", timeout=120_000)
                 assert run.wait(timeout=60) == 0
                 told = window.api("GET", "batch")[0]
-                assert (told["kind"], told["done"], told["failed"]) == ("watched", 16, 0)
+                assert (told["kind"], told["total"], told["done"], told["failed"]) == ("watched", 16, 16, 0)
         finally:
             run.kill()
             run.wait()
 
 
 def test_collisions_are_told_before_anything_is_written(bench):
+    """And the form offers what `--on-collision` does."""
     with bench.folder(a="a.nef", b="a.dng") as (folder, home), bench.window(folder, home) as window:
         with bench.page(window, "#batch") as page:
             page.click("#batch button:text-is('Start')")
             page.wait_for_selector("#batch .state[data-phase=failed]", timeout=60_000)
             page.wait_for_selector("#batch .notice:has-text('written to one output')")
             assert list((folder / "pictures").glob("*.jpg")) == []
+            page.select_option("#batch label:has-text('Files of one name') select", "prefer:dng")
+            page.click("#batch button:text-is('Start')")
+            page.wait_for_selector("#batch .state[data-phase=done]", timeout=60_000)
+            assert [path.name for path in (folder / "pictures").glob("*")  if path.suffix] == ["a.jpg"]
+            told = window.api("GET", "batch")[0]
+            assert [done["input"] for done in told["recent"]] == ["a.dng"], told
+    with bench.folder(a="a.nef") as (folder, home), bench.window(folder, home) as window, bench.page(window, "#batch") as page:
+        page.wait_for_selector("#batch button:text-is('Start')")
+        page.wait_for_timeout(500)
+        assert not page.is_visible("#batch label:has-text('Files of one name')")

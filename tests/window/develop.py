@@ -79,6 +79,24 @@ def test_tiles_are_the_picture(bench):
         assert status == 400
 
 
+def test_exposure_from_a_chart(bench):
+    """The view shows what `develop` writes, and says what the chart told; a shot without a chart is told at once."""
+    from PIL import Image
+
+    with bench.folder(a="a.nef") as (folder, home), bench.window(folder, home) as window:
+        edits = {"exposure-from-chart": "auto", "look": "reproduction"}
+        asked = {"file": "0/a.nef", "place": "test", "rect": [100, 60, 256, 200], "format": "png", "edits": edits}
+        status, headers, content = window.ask("POST", "api/v1/render", asked)
+        assert status == 200, content
+        assert "the exposure is that of" in headers["darkroot-view"], headers["darkroot-view"]
+        options = [word for name, text in edits.items() for word in (f"--{name}", text)]
+        assert window.run("develop", folder / "a.nef", "-o", home / "a.png", "--bits", "8", *options).returncode == 0
+        whole = Image.open(home / "a.png").convert("RGB").crop((100, 60, 356, 260))
+        assert Image.open(io.BytesIO(content)).convert("RGB").tobytes() == whole.tobytes()
+        status, _, words = window.ask("POST", "api/v1/render", asked | {"edits": {"exposure-from-chart": "auto", "chart-layout": "sg140"}})
+        assert status == 422 and b"chart" in words, (status, words)
+
+
 def test_pixel_for_pixel(bench):
     """A double click shows pixels, tiles come; dragging moves; F fits."""
     with bench.folder() as (folder, home):

@@ -109,8 +109,9 @@ class Bench:
 
 
 def shown(page):
-    """Waits for the picture of the develop view, and for what it tells."""
+    """Waits for the picture of the develop view, and for what the controls show."""
     page.wait_for_selector("#develop .layer.main img.whole", timeout=60_000)
+    page.wait_for_selector("#develop[data-file]", timeout=60_000)
 
 
 def set_number(page, name, value):

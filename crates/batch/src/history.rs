@@ -30,6 +30,8 @@ pub struct KnownCharts {
 pub struct History {
     /// By output.
     pub outputs: HashMap<String, Known>,
+    /// Files that the last run was about, where it said so; of several journals their sum.
+    pub files: Option<usize>,
     /// Number by input, where names carry one.
     pub numbers: HashMap<String, usize>,
     /// What is known of charts.
@@ -42,7 +44,8 @@ impl History {
     pub(crate) fn add(&mut self, record: Record) {
         match record {
             Record::Journal { .. } => {}
-            Record::Begun { input, output, number } => {
+            Record::Begun { input, output, number, of } => {
+                self.files = of;
                 self.outputs.entry(output).or_default().open = true;
                 if let Some(number) = number {
                     self.numbers.insert(input, number);
@@ -89,6 +92,10 @@ impl History {
                 mine.failed = known.failed;
             }
         }
+        self.files = match (self.files, other.files) {
+            (Some(mine), Some(others)) => Some(mine + others),
+            (mine, others) => mine.or(others),
+        };
         self.numbers.extend(other.numbers);
         self.charts.looked.extend(other.charts.looked);
         self.charts.calibrated.extend(other.charts.calibrated);

@@ -32,6 +32,25 @@ pub enum OnCollision {
     Prefer(Vec<String>),
 }
 
+impl std::str::FromStr for OnCollision {
+    type Err = String;
+
+    /// `refuse`, `suffix`, `skip`, or `prefer:` and endings between commas.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ending = |text: &str| text.trim().trim_start_matches('.').to_lowercase();
+        let preferred = text.strip_prefix("prefer").map(|rest| rest.trim_start_matches([':', '=', ' ']));
+        match (text, preferred) {
+            ("refuse", _) => Ok(Self::Refuse),
+            ("suffix", _) => Ok(Self::Suffix),
+            ("skip", _) => Ok(Self::Skip),
+            (_, Some(endings)) if !endings.is_empty() => {
+                Ok(Self::Prefer(endings.split(',').map(ending).collect()))
+            }
+            _ => Err("use refuse, suffix, skip or prefer:nef,dng".to_owned()),
+        }
+    }
+}
+
 /// How a plan is made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanOptions {

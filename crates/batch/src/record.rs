@@ -81,6 +81,9 @@ pub enum Record {
         /// Number of the input, where names carry one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         number: Option<usize>,
+        /// Files that its run is about, also those that were done before; not where more may come.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        of: Option<usize>,
     },
     /// It is done.
     Done(Box<Done>),

@@ -66,7 +66,9 @@ impl<'a> Run<'a> {
             self.in_doubt.insert(work.id);
         }
         let number = names::needs_number(&self.plan.template).then_some(item.number);
-        let record = Record::Begun { input: item.source.key.clone(), output: item.output.clone(), number };
+        let (input, output) = (item.source.key.clone(), item.output.clone());
+        let of = (!self.inputs_may_vanish).then_some(self.plan.items.len());
+        let record = Record::Begun { input, output, number, of };
         if let Err(error) = self.write(record) {
             return self.stop(error);
         }

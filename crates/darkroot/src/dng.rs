@@ -41,7 +41,7 @@ pub(crate) fn facts(
     preview: Picture,
 ) -> Result<Dng, darkroot_profile::export::Error> {
     let white = plan.white.map_or(white::D50_XY, Temperature::xy);
-    let neutral = plan.multipliers.map(|multiplier| 1.0 / f64::from(multiplier));
+    let neutral = plan.multipliers().map(|multiplier| 1.0 / f64::from(multiplier));
     let largest = neutral.into_iter().fold(0.0, f64::max);
     let neutral = neutral.map(|v| v / largest);
     let light = Light { name: "as shot".to_owned(), xy: white };

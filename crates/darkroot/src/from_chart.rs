@@ -24,7 +24,7 @@ const OTHER_EXPOSURE: f64 = 0.05;
 
 /// What a shot of a chart tells.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Told {
+pub struct Told {
     /// The shot.
     pub(crate) path: PathBuf,
     /// SHA-256 of its file; empty where it is the photograph itself.
@@ -186,7 +186,7 @@ impl Told {
             plan.gain.log2()
         ));
         if self.veil.iter().any(|v| v.abs() > 0.0) {
-            plan.veil = [0, 1, 2].map(|c| self.veil[c] as f32 * plan.multipliers[c]);
+            plan.veil = [0, 1, 2].map(|c| self.veil[c] as f32 * plan.multipliers()[c]);
             let [r, g, b] = [0, 1, 2].map(|c| 100.0 * self.veil[c] / self.neutral[c]);
             notes.push(format!("stray light was taken off as the chart shows it: {r:.2} % of white in red, {g:.2} % in green, {b:.2} % in blue"));
         }

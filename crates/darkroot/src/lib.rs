@@ -27,6 +27,7 @@ pub mod recipe;
 pub use recipe::{Effective, Layer, Layers, Origin, RecipeError};
 
 pub mod photo;
+mod planned;
 pub use photo::{Photo, PlanError};
 
 pub mod naming;
@@ -46,6 +47,7 @@ pub mod lut;
 mod dng;
 mod from_chart;
 mod hdr;
+pub use from_chart::Told as ToldByChart;
 mod provenance;
 
 pub mod inspect;

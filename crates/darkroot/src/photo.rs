@@ -188,14 +188,20 @@ impl Photo {
         settings: &Settings,
     ) -> Result<Plan, PlanError> {
         let chosen = self.profile(store, settings)?;
-        let mut recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
-        recipe.lut = self.lut.of(settings).map_err(Box::new)?;
+        let recipe = self.recipe(settings)?;
         let mut plan = self.plan_with(analysis, chosen.as_ref().map(|c| c.profile.as_ref()), recipe)?;
         if settings.chart.shot != ChartShot::None {
             plan.notes
                 .push("exposure, black and white of a chart are taken by jobs on files only".to_owned());
         }
         Ok(plan)
+    }
+
+    /// The recipe that the settings mean, with the table that they name.
+    pub(crate) fn recipe(&self, settings: &Settings) -> Result<Recipe, PlanError> {
+        let mut recipe = settings.resolve(settings.format.unwrap_or_else(|| settings.default_format()))?;
+        recipe.lut = self.lut.of(settings).map_err(Box::new)?;
+        Ok(recipe)
     }
 
     /// As [`Photo::plan`], where the profile and the recipe are known already; what the metadata tell of the lens is looked

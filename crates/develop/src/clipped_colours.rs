@@ -5,6 +5,8 @@
 //! that is: means over ever larger squares, of which each place takes the smallest that knows something. Blocks of which
 //! one channel is clipped know from the other two how strong their colour is; they hand that on to those inside.
 
+use rayon::prelude::*;
+
 use crate::highlights::rebuilt;
 use crate::survey::{Block, Survey};
 
@@ -14,6 +16,8 @@ const DARK: f32 = 0.6;
 const ALL_OVER: f32 = 0.95;
 /// Weight of grey where nothing else is known.
 const NOTHING: f32 = 3e-4;
+/// Rows that one task goes on with.
+const ROWS: usize = 16;
 
 /// Balanced colours, mean 1, on a grid over the active area.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -98,7 +102,8 @@ impl Cell {
     }
 
     fn plus(self, other: Self, share: f32) -> Self {
-        Self([0, 1, 2, 3].map(|i| self.0[i] + share * other.0[i]))
+        let (Self(a), Self(b)) = (self, other);
+        Self([a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2], a[3] + share * b[3]])
     }
 }
 
@@ -120,15 +125,15 @@ impl Grid {
             return self;
         }
         let coarse = self.halved().continued();
-        let columns = self.columns;
-        let fill = |(i, cell): (usize, &Cell)| {
-            let [.., weight] = cell.0;
-            let lacks = (1.0 - weight).max(0.0);
-            let (x, y) = ((i % columns) as f32, (i / columns) as f32);
-            let around = coarse.between((x - 0.5) / 2.0, (y - 0.5) / 2.0);
-            cell.plus(around, lacks)
-        };
-        let cells = self.cells.iter().enumerate().map(fill).collect();
+        let Self { columns, mut cells } = self;
+        let half = |i: usize| (i as f32 - 0.5) / 2.0;
+        cells.par_chunks_mut(columns).with_min_len(ROWS).enumerate().for_each(|(y, row)| {
+            for (x, cell) in row.iter_mut().enumerate() {
+                let Cell([.., weight]) = *cell;
+                let lacks = (1.0 - weight).max(0.0);
+                *cell = cell.plus(coarse.between(half(x), half(y)), lacks);
+            }
+        });
         Self { columns, cells }
     }
 
@@ -136,9 +141,11 @@ impl Grid {
     fn halved(&self) -> Self {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows().div_ceil(2));
         let mut cells = vec![UNKNOWN; columns * rows];
-        for (i, cell) in self.cells.iter().enumerate() {
-            let (x, y) = (i % self.columns / 2, i / self.columns / 2);
-            cells[y * columns + x] = cells[y * columns + x].plus(*cell, 1.0);
+        for (y, row) in self.cells.chunks(self.columns).enumerate() {
+            let sums = &mut cells[y / 2 * columns..][..columns];
+            for (sum, pair) in sums.iter_mut().zip(row.chunks(2)) {
+                *sum = pair.iter().fold(*sum, |sum, cell| sum.plus(*cell, 1.0));
+            }
         }
         for cell in &mut cells {
             let [.., weight] = cell.0;
@@ -148,6 +155,7 @@ impl Grid {
     }
 
     /// The mean of the four cells around a place, by nearness; beyond the edge it goes on as it ends.
+    #[inline]
     fn between(&self, x: f32, y: f32) -> Cell {
         let place = |at: f32, count: usize| {
             let at = at.clamp(0.0, (count - 1) as f32);

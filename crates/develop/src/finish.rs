@@ -24,12 +24,13 @@ impl<T: Sample> Finish<T> {
         Self { strip: Rgb::black(Size { width: 0, height: 0 }), row: Vec::new() }
     }
 
-    /// Finishes a tile, which lies at `rect` of the grid, and writes it into its band of the upright picture.
+    /// Finishes a tile, which lies at `rect` of the grid, and writes it into its band of the upright picture. `camera` is the
+    /// light of a part of the grid, `held`, in which the tile lies.
     pub(crate) fn tile(
         &mut self,
         plan: &Plan,
         grid: &Grid,
-        camera: &Rgb<CameraSpace>,
+        (camera, held): (&Rgb<CameraSpace>, Rect),
         rect: Rect,
         (band_rect, band): (Rect, &mut [T]),
     ) {
@@ -39,7 +40,10 @@ impl<T: Sample> Finish<T> {
             let mut strip = std::mem::replace(&mut self.strip, Rgb::black(Size { width: 0, height: 0 }));
             strip.resize(size);
             for (out, plane) in strip.planes_mut().into_iter().zip(camera.planes()) {
-                out.copy_from_slice(&plane[top * size.width..][..size.area()]);
+                for (y, out) in out.chunks_exact_mut(size.width).enumerate() {
+                    let at = (rect.y - held.y + top + y) * held.width + rect.x - held.x;
+                    out.copy_from_slice(&plane[at..][..size.width]);
+                }
             }
             let display = stages(strip, plan);
             for y in 0..size.height {
@@ -66,10 +70,10 @@ impl<T: Sample> Finish<T> {
 
 /// All stages of one pixel but the last.
 fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
-    highlights::neutralise(&mut camera, &plan.highlights);
+    highlights::neutralise(&mut camera, &plan.base.highlights);
     let Some(model) = &plan.model else {
         if plan.space == OutputSpace::Raw {
-            return balance::undo(camera, plan.multipliers).into_space();
+            return balance::undo(camera, plan.base.multipliers).into_space();
         }
         return exposure::expose(camera.into_space::<Scene>(), plan.gain).into_space();
     };

@@ -2,7 +2,7 @@
 
 use darkroot_photo::{Orientation, Rect, Size};
 
-use crate::plan::Plan;
+use crate::base::Base;
 use crate::view::Scale;
 
 /// The pixels of a picture at a scale, as they lie in the frame.
@@ -18,8 +18,8 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    pub(crate) fn of(plan: &Plan, scale: Scale) -> Self {
-        let (crop, orientation, bin) = (plan.laid.crop, plan.laid.orientation, scale.bin());
+    pub(crate) fn of(base: &Base, scale: Scale) -> Self {
+        let (crop, orientation, bin) = (base.laid.crop, base.laid.orientation, scale.bin());
         let size = scale.of(crop.size());
         let upright = orientation.applied_to(size);
         // Which corner of the grid becomes the upright picture's top left one.

@@ -37,6 +37,9 @@ pub use plan::{Colours, Plan, plan};
 pub mod view;
 pub use view::{Cancel, Cancelled, Scale, View};
 
+pub mod kept;
+pub use kept::Kept;
+
 pub mod tally;
 pub use tally::{Clipped, Tally};
 
@@ -63,11 +66,13 @@ pub use whites::Whites;
 
 mod auto_exposure;
 mod auto_white;
+mod base;
 mod cones;
 mod finish;
 mod grid;
 mod in_turn;
 pub mod lateral;
+mod neighbourhood;
 mod neutral;
 mod render;
 mod tile;

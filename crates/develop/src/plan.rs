@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{RgbSpace, TransferCurve, Xy, Xyz, white};
-use darkroot_photo::{AsShot, Capture, Correction, Layout, Size};
+use darkroot_photo::{AsShot, Correction, Layout, Size};
 use darkroot_profile::{Model, PlaneModel, Profile};
 
 use crate::analysis::Analysis;
+use crate::base::Base;
 use crate::corrections::is_supported;
 use crate::demosaic::Method;
 use crate::denoise::{Asked, Denoiser, Strength};
@@ -17,7 +18,6 @@ use crate::gamut::{Mapping, Primaries};
 use crate::geometry::{Geometry, Laid, Lens, lay};
 use crate::highlights::{CLIPPED, Rebuild, Treatment};
 use crate::lateral::Lateral;
-use crate::light::LinearLight;
 use crate::lut;
 use crate::mend::Mends;
 use crate::noise::Noise;
@@ -50,31 +50,14 @@ pub struct Plan {
     pub colours: Colours,
     /// White of the light; `None` when nothing tells it.
     pub white: Option<Temperature>,
-    /// White-balance multipliers; the smallest is 1.
-    pub multipliers: [f32; 3],
     /// Factor on scene-linear light.
     pub gain: f32,
     /// Stray light in balanced camera RGB, which is taken off; 0 unless whoever made the plan knows of some.
     pub veil: [f32; 3],
-    /// Demosaicing method.
-    pub demosaic: Method,
     /// What had to be assumed or left out, in words.
     pub notes: Vec<String>,
-    pub(crate) capture: Arc<Capture>,
-    pub(crate) light: Arc<LinearLight>,
-    /// Where the picture lies in the frame.
-    pub(crate) laid: Laid,
-    pub(crate) picture_corrections: Vec<Correction>,
-    pub(crate) highlights: Treatment,
-    pub(crate) noise: Noise,
-    /// What is put right in single samples.
-    pub(crate) mends: Arc<Mends>,
-    /// What takes noise from the mosaic; `None` for nothing.
-    pub(crate) denoiser: Option<Arc<Denoiser>>,
-    /// Where red and blue are to be brought from to where green is; `None` for nothing.
-    pub(crate) lateral: Option<Lateral>,
-    /// What sharpens the picture; `None` for nothing.
-    pub(crate) sharpener: Option<Sharpener>,
+    /// What the stages before exposure use.
+    pub(crate) base: Base,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
     pub(crate) curve: Option<Curve>,
@@ -95,6 +78,16 @@ impl Plan {
         self.size_at(Scale::FULL)
     }
 
+    /// White-balance multipliers; the smallest is 1.
+    pub fn multipliers(&self) -> [f32; 3] {
+        self.base.multipliers
+    }
+
+    /// Demosaicing method.
+    pub fn demosaic(&self) -> Method {
+        self.base.demosaic
+    }
+
     /// What rendering has cut until now, all views together; nothing where colours are mapped or kept.
     pub fn clipped(&self) -> Clipped {
         self.tally.clipped()
@@ -104,7 +97,7 @@ impl Plan {
     /// relative to D50, Y = 1 for white. `None` for camera output.
     pub fn colour_of(&self, camera: [f64; 3]) -> Option<Xyz> {
         let model = self.colour_model.as_ref()?;
-        Some(model.xyz([0, 1, 2].map(|c| camera[c] * f64::from(self.multipliers[c]))))
+        Some(model.xyz([0, 1, 2].map(|c| camera[c] * f64::from(self.base.multipliers[c]))))
     }
 
     /// The model that takes balanced camera RGB to XYZ relative to D50; `None` for balanced camera output.
@@ -114,7 +107,7 @@ impl Plan {
 
     /// Size of the developed picture at a scale, upright.
     pub fn size_at(&self, scale: Scale) -> Size {
-        scale.of(self.laid.size)
+        scale.of(self.base.laid.size)
     }
 }
 
@@ -171,25 +164,27 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
-        multipliers,
         gain: gain(analysis, recipe.exposure, curve.is_none(), &model, multipliers),
         veil: [0.0; 3],
-        demosaic,
         notes,
-        capture: Arc::clone(capture),
-        light: Arc::clone(analysis.light()),
-        laid,
-        noise: noise_left(analysis, demosaic, denoiser.as_deref(), multipliers),
-        mends,
-        denoiser,
-        lateral,
-        sharpener: sharpener(analysis, sharpening, multipliers),
-        picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
-        highlights: match recipe.highlights {
-            _ if camera_output => Treatment::Keep,
-            // A measurement must not contain what was guessed.
-            Highlights::Rebuild if linear => Treatment::Keep,
-            wanted => treatment(analysis, wanted, multipliers, is_uneven),
+        base: Base {
+            capture: Arc::clone(capture),
+            light: Arc::clone(analysis.light()),
+            laid,
+            multipliers,
+            demosaic,
+            noise: noise_left(analysis, demosaic, denoiser.as_deref(), multipliers),
+            mends,
+            denoiser,
+            lateral,
+            sharpener: sharpener(analysis, sharpening, multipliers),
+            picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
+            highlights: match recipe.highlights {
+                _ if camera_output => Treatment::Keep,
+                // A measurement must not contain what was guessed.
+                Highlights::Rebuild if linear => Treatment::Keep,
+                wanted => treatment(analysis, wanted, multipliers, is_uneven),
+            },
         },
         model: (!camera_output).then(|| {
             let to_scene = RgbSpace::REC2020.from_xyz_under(white::D50);

@@ -2,24 +2,16 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use darkroot_photo::{CameraSpace, Mosaic, Picture, PictureSpace, Rect, Rgb, Samples, Size};
+use darkroot_photo::{CameraSpace, Picture, PictureSpace, Rect, Rgb, Samples};
 
-use crate::demosaic::reduce::{self, Reduction};
-use crate::demosaic::{self, Method, debias};
-use crate::denoise::{self, Coarse, Denoiser};
 use crate::finish::Finish;
-use crate::geometry::{self, Warp, brighten, resample};
-use crate::grid::Grid;
-use crate::highlights::{self, Treatment};
 use crate::in_turn::in_turn;
+use crate::kept::{Kept, Last};
+use crate::neighbourhood::{self, Neighbourhood};
 use crate::plan::Plan;
 use crate::recipe::{Bits, OutputSpace};
-use crate::sharpen::{self, Sharpener};
-use crate::stage::{Stage, tile_border};
-use crate::tile::{Levelled, covered, tile, tile_ends};
 use crate::transfer::Sample;
 use crate::view::{Cancel, Cancelled, Scale, View};
-use crate::{corrections, fringe, lateral};
 
 /// Rows of the sensor that one task looks at.
 const BAND_ROWS: usize = 192;
@@ -52,13 +44,31 @@ impl Plan {
         columns: usize,
         rows: usize,
     ) -> Result<Picture, Cancelled> {
-        let render = Render::of(self, view, cancel, columns)?;
-        let samples = match self.bits {
-            Bits::Eight => Samples::U8(render.picture(rows)?),
-            Bits::Sixteen => Samples::U16(render.picture(rows)?),
-            Bits::Float => Samples::F32(render.picture(rows)?),
-        };
-        Ok(Picture { size: render.rect.size(), samples, space: self.picture_space() })
+        Render::of(self, view, cancel, columns)?.samples(rows)
+    }
+
+    /// As [`Plan::render`], for a view that is to be rendered again when a setting has moved: its camera RGB is kept. Where
+    /// the one that is kept is of the same view, and no setting that has a say in it has changed, only the stages of single
+    /// pixels are done. The picture is the same, bit for bit.
+    ///
+    /// # Errors
+    /// Somebody cancelled it.
+    pub fn render_again(&self, view: View, kept: &Kept, cancel: &Cancel) -> Result<Picture, Cancelled> {
+        let bin = view.scale.bin();
+        let (columns, rows) = (TILE_COLUMNS.div_ceil(bin), BAND_ROWS.div_ceil(bin));
+        let mut render = Render::of(self, view, cancel, columns)?;
+        if render.rect.size().area() <= Kept::LARGEST {
+            render.kept = Some(match kept.of(&self.base, view) {
+                Some(last) => last,
+                None => kept.put(Last { base: self.base.clone(), view, camera: render.camera(rows)? }),
+            });
+        }
+        render.samples(rows)
+    }
+
+    /// Whether [`Plan::render_again`] would take the camera RGB that is kept.
+    pub fn is_kept(&self, view: View, kept: &Kept) -> bool {
+        kept.of(&self.base, view).is_some()
     }
 
     /// Develops a view band by band: `take` gets each band of so many rows (the last one may have fewer) as soon as it is
@@ -97,22 +107,6 @@ impl Plan {
             OutputSpace::Raw => PictureSpace::Raw,
         }
     }
-
-    /// Stages that change the mosaic before it becomes a picture.
-    fn changes(&self) -> Vec<Stage> {
-        let rebuilds = matches!(self.highlights, Treatment::Rebuild(_)) && self.demosaic != Method::None;
-        let aligns = self.lateral.as_ref().map(lateral::stage);
-        rebuilds.then_some(highlights::STAGE).into_iter().chain(aligns).collect()
-    }
-
-    /// Stages that read the changed mosaic.
-    fn readers(&self, scale: Scale) -> Vec<Stage> {
-        match (self.demosaic, scale) {
-            (Method::None, _) => Vec::new(),
-            (_, scale) if scale.bin() >= reduce::LEAST => vec![reduce::STAGE],
-            (method, _) => vec![method.stage(), debias::STAGE, fringe::STAGE],
-        }
-    }
 }
 
 /// Takes a finished band, as [`Plan::render_bands`] says, and may stop the rendering.
@@ -121,36 +115,17 @@ pub(crate) type TakeBand<'a, T> = dyn Fn(usize, &[T]) -> Result<(), Cancelled> +
 /// One rendering: which rectangle of the upright picture, in tiles of how many columns.
 pub struct Render<'a> {
     plan: &'a Plan,
-    grid: Grid,
-    /// Where the picture's pixels come from, and the grid that those are, where that is not the frame's.
-    warp: Option<(&'a Warp, Grid)>,
-    /// Pixels around a tile that the mosaic has more than the picture that is made from it, and that that has more than
-    /// the tile.
-    border: usize,
-    wider: usize,
-    reduction: Option<Reduction>,
+    neighbourhood: Neighbourhood<'a>,
     rect: Rect,
     columns: usize,
-    /// What takes away noise, with that of the coarse scales.
-    denoiser: Option<(&'a Denoiser, Arc<Coarse>)>,
-    sharpener: Option<&'a Sharpener>,
+    /// Camera RGB of the whole rectangle, where it is known already.
+    kept: Option<Arc<Last>>,
     cancel: &'a Cancel,
 }
 
 /// What a thread works in, kept from one tile to the next.
 struct Scratch<T> {
-    denoised: denoise::Scratch,
-    mosaic: Mosaic<f32>,
-    /// Where each sample of the mosaic clips, when the file's corrections make that differ.
-    ends: Mosaic<f32>,
-    camera: Rgb<CameraSpace>,
-    /// The same before it is sharpened, and more of it.
-    wide: Rgb<CameraSpace>,
-    sharpened: sharpen::Scratch,
-    aligned: lateral::Scratch,
-    /// The picture, where it is not made of the frame's pixels as they are.
-    warped: Rgb<CameraSpace>,
-    mapped: geometry::Scratch,
+    neighbourhood: neighbourhood::Scratch,
     finish: Finish<T>,
 }
 
@@ -158,52 +133,25 @@ impl<'a> Render<'a> {
     fn of(plan: &'a Plan, view: View, cancel: &'a Cancel, columns: usize) -> Result<Self, Cancelled> {
         let nothing = Rect { width: 0, height: 0, ..view.rect };
         let rect = view.rect.intersection(plan.whole(view.scale).rect).unwrap_or(nothing);
-        let layout = plan.capture.counts.layout();
-        let coarse =
-            |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&plan.capture, &plan.light, cancel)?));
-        let reduction = (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout));
-        let (grid, warp, columns) = match &plan.laid.warp {
-            None => (Grid::of(plan, view.scale), None, columns),
-            Some(warp) => {
-                let of_picture = Grid::of_area(Rect::full(plan.laid.size), view.scale);
-                let of_frame = Grid::of_area(plan.capture.active_area, view.scale);
-                (of_frame, Some((warp, of_picture)), warp.columns(columns))
-            }
-        };
-        let sharpener = plan.sharpener.as_ref().filter(|_| reduction.is_none());
-        Ok(Self {
-            plan,
-            grid,
-            warp,
-            border: tile_border(&plan.changes(), &plan.readers(view.scale)),
-            wider: sharpener.map_or(0, |_| sharpen::STAGE.border),
-            reduction,
-            rect,
-            columns: columns.clamp(1, rect.width.max(1)),
-            denoiser: plan.denoiser.as_ref().map(coarse).transpose()?,
-            sharpener,
-            cancel,
-        })
+        let neighbourhood = Neighbourhood::of(&plan.base, view.scale, cancel)?;
+        let columns = neighbourhood.columns(columns).clamp(1, rect.width.max(1));
+        Ok(Self { plan, neighbourhood, rect, columns, kept: None, cancel })
     }
 
     fn scratch<T: Sample>(&self) -> Scratch<T> {
-        let nothing = Size { width: 0, height: 0 };
-        let layout = self.plan.capture.counts.layout().clone();
-        Scratch {
-            denoised: denoise::Scratch::default(),
-            mosaic: Mosaic { size: nothing, layout: layout.clone(), samples: Vec::new() },
-            ends: Mosaic { size: nothing, layout, samples: Vec::new() },
-            camera: Rgb::black(nothing),
-            wide: Rgb::black(nothing),
-            sharpened: sharpen::Scratch::default(),
-            aligned: lateral::Scratch::default(),
-            warped: Rgb::black(nothing),
-            mapped: geometry::Scratch::default(),
-            finish: Finish::new(),
-        }
+        Scratch { neighbourhood: self.neighbourhood.scratch(), finish: Finish::new() }
     }
 
-    /// The whole rectangle, in bands of so many rows.
+    /// The whole picture, in bands of so many rows.
+    fn samples(&self, rows: usize) -> Result<Picture, Cancelled> {
+        let samples = match self.plan.bits {
+            Bits::Eight => Samples::U8(self.picture(rows)?),
+            Bits::Sixteen => Samples::U16(self.picture(rows)?),
+            Bits::Float => Samples::F32(self.picture(rows)?),
+        };
+        Ok(Picture { size: self.rect.size(), samples, space: self.plan.picture_space() })
+    }
+
     fn picture<T: Sample>(&self, rows: usize) -> Result<Vec<T>, Cancelled> {
         let mut out = vec![T::default(); 3 * self.rect.size().area()];
         if out.is_empty() {
@@ -235,70 +183,45 @@ impl<'a> Render<'a> {
                 return Err(Cancelled);
             }
             let width = self.columns.min(self.rect.width - x);
-            let upright = Rect { x: self.rect.x + x, width, ..band_rect };
-            if let Some((warp, grid)) = &self.warp {
-                let places = warp.places(upright, grid.bin);
-                let source = warp.needs(&places, grid.bin);
-                self.neighbourhood_stages(source, scratch);
-                let Scratch { camera, warped, mapped, .. } = &mut *scratch;
-                resample(warp, (camera, source), &places, upright, mapped, warped);
-                scratch.finish.tile(self.plan, grid, &scratch.warped, upright, (band_rect, band));
-            } else {
-                let rect = self.grid.of_upright(upright);
-                self.neighbourhood_stages(rect, scratch);
-                scratch.finish.tile(self.plan, &self.grid, &scratch.camera, rect, (band_rect, band));
-            }
+            let rect = self.neighbourhood.grid.of_upright(Rect { x: self.rect.x + x, width, ..band_rect });
+            let Scratch { neighbourhood, finish } = &mut *scratch;
+            let camera = match &self.kept {
+                Some(last) => (&last.camera, self.neighbourhood.grid.of_upright(self.rect)),
+                None => (self.neighbourhood.camera(rect, neighbourhood), rect),
+            };
+            finish.tile(self.plan, &self.neighbourhood.grid, camera, rect, (band_rect, band));
         }
         Ok(())
     }
 
-    /// The pipeline down to camera RGB, for one rectangle of the grid.
-    fn neighbourhood_stages<T>(&self, rect: Rect, scratch: &mut Scratch<T>) {
-        let (plan, border, bin) = (self.plan, self.border, self.grid.bin);
-        let Scratch { denoised, mosaic, ends, camera, wide, sharpened, aligned, .. } = scratch;
-        let (x, y) = self.grid.corner(rect);
-        let around = border + self.wider;
-        let size = Size { width: rect.width * bin + 2 * around, height: rect.height * bin + 2 * around };
-        let begin = (x - around as isize, y - around as isize);
-        let (capture, light) = (&*plan.capture, &*plan.light);
-        let levelled: &Levelled<'_> = match &self.denoiser {
-            None => &|x, y, row| plan.mends.levelled(capture, light, (x, y), row),
-            Some((filter, coarse)) => {
-                filter.denoise((capture, light), coarse, covered(capture, begin, size), denoised);
-                &|x, y, row| denoised.row(x, y, row)
-            }
-        };
-        tile(capture, (light, levelled), plan.multipliers, begin, size, mosaic);
-        tile_ends(plan, begin, size, ends);
-        highlights::treat(mosaic, begin, &plan.highlights, &ends.samples);
-        if let Some(lateral) = &plan.lateral {
-            lateral::align(mosaic, begin, lateral, aligned);
-        }
-        match &self.reduction {
-            Some(reduction) => reduction.reduce(mosaic, border, bin, begin, camera),
-            None => {
-                let interpolated = if self.sharpener.is_some() { &mut *wide } else { &mut *camera };
-                demosaic::demosaic(mosaic, plan.demosaic, border, interpolated);
-                debias::debias(mosaic, border, &plan.noise, interpolated);
-                fringe::cut(mosaic, border, &plan.highlights, interpolated);
-                if let Some(sharpener) = self.sharpener {
-                    sharpen::sharpen(wide, sharpener, sharpened, camera);
+    /// Balanced camera RGB of the whole rectangle, as it lies in the grid.
+    fn camera(&self, rows: usize) -> Result<Rgb<CameraSpace>, Cancelled> {
+        let whole = self.neighbourhood.grid.of_upright(self.rect);
+        let mut camera = Rgb::black(whole.size());
+        let columns = self.columns.min(whole.width.max(1));
+        let length = rows.clamp(1, whole.height.max(1)) * whole.width.max(1);
+        let [r, g, b] = camera.planes_mut().map(|plane| plane.chunks_mut(length));
+        let bands = (whole.y..).step_by(length / whole.width.max(1)).zip(r.zip(g).zip(b));
+        in_turn(
+            bands,
+            || self.neighbourhood.scratch(),
+            |scratch, (y, ((r, g), b))| {
+                for x in (0..whole.width).step_by(columns) {
+                    if self.cancel.is_cancelled() {
+                        return Err(Cancelled);
+                    }
+                    let width = columns.min(whole.width - x);
+                    let rect = Rect { x: whole.x + x, y, width, height: r.len() / whole.width };
+                    let tile = self.neighbourhood.camera(rect, scratch);
+                    for (out, plane) in [&mut *r, &mut *g, &mut *b].into_iter().zip(tile.planes()) {
+                        for (out, row) in out.chunks_exact_mut(whole.width).zip(plane.chunks_exact(width)) {
+                            out[x..x + width].copy_from_slice(row);
+                        }
+                    }
                 }
-                if bin > 1 {
-                    *camera = reduce::mean(camera, bin);
-                }
-            }
-        }
-        if !plan.picture_corrections.is_empty() {
-            let area = plan.capture.active_area;
-            // The middle of each pixel.
-            let inside = |v: isize, start: usize| (v - start as isize).max(0) as usize + (bin - 1) / 2;
-            let at = (inside(x, area.x), inside(y, area.y));
-            corrections::picture(camera, &plan.picture_corrections, at, bin, area.size());
-        }
-        if let Some((lens, middle)) = &plan.laid.vignetting {
-            let from_middle = |v: isize, middle: f64| v as f64 + 0.5 * bin as f64 - middle;
-            brighten(camera, lens, [from_middle(x, middle[0]), from_middle(y, middle[1])], bin);
-        }
+                Ok(())
+            },
+        )?;
+        Ok(camera)
     }
 }

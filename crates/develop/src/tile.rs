@@ -6,9 +6,9 @@
 use darkroot_photo::{Capture, Mosaic, Rect, Size};
 
 use crate::balance;
+use crate::base::Base;
 use crate::highlights::Treatment;
 use crate::light::{LinearLight, channels, layout_from, period};
-use crate::plan::Plan;
 
 /// Gives the levelled light of row `y` of the frame from column `x` on.
 pub(crate) type Levelled<'a> = dyn Fn(usize, usize, &mut [f32]) + 'a;
@@ -67,17 +67,17 @@ pub(crate) fn covered(capture: &Capture, (x, y): (isize, isize), size: Size) -> 
 
 /// Makes `ends` the balanced light at which each sample of such a tile clips, where highlights are rebuilt and the file's
 /// corrections make that differ from place to place; empties it elsewhere.
-pub(crate) fn tile_ends(plan: &Plan, begin: (isize, isize), size: Size, ends: &mut Mosaic<f32>) {
+pub(crate) fn tile_ends(base: &Base, begin: (isize, isize), size: Size, ends: &mut Mosaic<f32>) {
     ends.samples.clear();
-    let (Treatment::Rebuild(rebuild), true) = (&plan.highlights, plan.light.is_corrected()) else { return };
-    let saturation = [0, 1, 2].map(|c| rebuild.limits[c] / plan.multipliers[c]);
-    let stored = plan.capture.counts.layout();
+    let (Treatment::Rebuild(rebuild), true) = (&base.highlights, base.light.is_corrected()) else { return };
+    let saturation = [0, 1, 2].map(|c| rebuild.limits[c] / base.multipliers[c]);
+    let stored = base.capture.counts.layout();
     let saturated = |x: usize, y: usize, row: &mut [f32]| {
         for (end, c) in row.iter_mut().zip(channels(stored, x, y, 1).into_iter().cycle()) {
             *end = saturation[c];
         }
     };
-    tile(&plan.capture, (&plan.light, &saturated), plan.multipliers, begin, size, ends);
+    tile(&base.capture, (&base.light, &saturated), base.multipliers, begin, size, ends);
 }
 
 /// The column (row) inside an area that stands for column `at`; `start` and `length` are the area's.

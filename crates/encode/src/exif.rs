@@ -16,6 +16,11 @@ use crate::Format;
 /// The orientation in the block is always 1, as the pixels are upright already. Fields that say how another
 /// file stores its pixels, and fields without a value, are left out. Text keeps its UTF-8 bytes.
 pub fn block(metadata: &Metadata) -> Vec<u8> {
+    with_thumbnail(metadata, None)
+}
+
+/// The same with a JPEG as thumbnail.
+pub(crate) fn with_thumbnail(metadata: &Metadata, thumbnail: Option<&[u8]>) -> Vec<u8> {
     let fields: Vec<exif::Field> = fields(metadata)
         .filter(|field| !has_own_place(field))
         .map(|field| exif::Field {
@@ -35,12 +40,30 @@ pub fn block(metadata: &Metadata) -> Vec<u8> {
     let mut writer = Writer::new();
     writer.push_field(&upright);
     fields.iter().for_each(|field| writer.push_field(field));
+    let of_thumbnail = thumbnail_fields();
+    if let Some(jpeg) = thumbnail {
+        of_thumbnail.iter().for_each(|field| writer.push_field(field));
+        writer.set_jpeg(jpeg, In::THUMBNAIL);
+    }
     let mut block = Cursor::new(Vec::new());
     match writer.write(&mut block, true) {
         Ok(()) => block.into_inner(),
         // Left are blocks of 4 GB and more.
         Err(_) => Vec::new(),
     }
+}
+
+/// What a thumbnail must state (Exif 2.32, table 21): that it is a JPEG, and a resolution.
+fn thumbnail_fields() -> [exif::Field; 4] {
+    const JPEG: u16 = 6;
+    let resolution = exif::Value::Rational(vec![Rational { num: UNKNOWN, denom: 1 }]);
+    [
+        (Tag::Compression, exif::Value::Short(vec![JPEG])),
+        (Tag::XResolution, resolution.clone()),
+        (Tag::YResolution, resolution),
+        (Tag::ResolutionUnit, exif::Value::Short(vec![INCH])),
+    ]
+    .map(|(tag, value)| exif::Field { tag, ifd_num: In::THUMBNAIL, value })
 }
 
 /// What a finished picture states of itself.
@@ -106,7 +129,7 @@ pub(crate) fn fields(metadata: &Metadata) -> impl Iterator<Item = &Field> {
 }
 
 /// The fields of the shot together with what the fields of the file must say of this picture: its size and
-/// whether it is in sRGB, and what a JPEG must say. No fields stay no fields.
+/// whether it is in sRGB, and what a JPEG must say beside that. No fields stay no fields.
 pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, format: Format) -> Metadata {
     let mut metadata = metadata.clone();
     if fields(&metadata).next().is_none() {
@@ -118,8 +141,12 @@ pub(crate) fn of_picture(metadata: &Metadata, size: Size, space: &PictureSpace, 
     };
     let mut set = |tag, value| metadata.set(Directory::Exif, tag, value);
     set(tag::COLOUR_SPACE, Value::Shorts(vec![if srgb { 1 } else { UNCALIBRATED }]));
-    set(PIXEL_X_DIMENSION, Value::Longs(vec![size.width as u32]));
-    set(PIXEL_Y_DIMENSION, Value::Longs(vec![size.height as u32]));
+    set(FLASHPIX_VERSION, Value::Undefined(b"0100".to_vec()));
+    // TIFF has the size in fields of its own (Exif 2.32, table 20).
+    if format != Format::Tiff {
+        set(PIXEL_X_DIMENSION, Value::Longs(vec![size.width as u32]));
+        set(PIXEL_Y_DIMENSION, Value::Longs(vec![size.height as u32]));
+    }
     if metadata.get(Directory::Exif, EXIF_VERSION).is_none() {
         metadata.set(Directory::Exif, EXIF_VERSION, Value::Undefined(b"0232".to_vec()));
     }
@@ -139,7 +166,6 @@ fn required_of_jpeg(metadata: &mut Metadata) {
         (Directory::Image, tag::RESOLUTION_UNIT, Value::Shorts(vec![INCH])),
         (Directory::Image, YCBCR_POSITIONING, Value::Shorts(vec![CENTRED])),
         (Directory::Exif, COMPONENTS, Value::Undefined(vec![1, 2, 3, 0])),
-        (Directory::Exif, FLASHPIX_VERSION, Value::Undefined(b"0100".to_vec())),
     ];
     for (directory, tag, value) in required {
         if metadata.get(directory, tag).is_none() {

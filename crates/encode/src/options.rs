@@ -47,6 +47,9 @@ pub struct Options {
     pub subsampling: ChromaSubsampling,
     /// Whether JPEG is progressive: some per cent smaller, seen early where it comes slowly; the whole picture is in memory.
     pub progressive: bool,
+    /// Whether the Exif of a JPEG in sRGB has a thumbnail, where it has any Exif. The output is then written at places before
+    /// its end, too.
+    pub thumbnail: bool,
     /// Compression of TIFF.
     pub compression: TiffCompression,
     /// Kind of WebP.
@@ -70,6 +73,7 @@ impl Default for Options {
             quality: 92,
             subsampling: ChromaSubsampling::default(),
             progressive: false,
+            thumbnail: false,
             compression: TiffCompression::default(),
             webp: WebpKind::default(),
             avif_speed: 10,

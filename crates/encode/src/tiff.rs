@@ -2,7 +2,7 @@
 
 use std::io::{Seek, Write};
 
-use darkroot_photo::metadata::{Directory, Value};
+use darkroot_photo::metadata::{Directory, Value, tag};
 use darkroot_photo::{Metadata, PictureSpace, Size};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -25,6 +25,9 @@ const ICC_PROFILE: u16 = 0x8773;
 
 /// Level of deflate; see PNG's.
 const LEVEL: u32 = 1;
+
+/// What stands in the file begins at even places (TIFF 6.0, section 2).
+const EVEN: usize = 2;
 
 /// Rows of a band, and of each of the strips that it becomes.
 const BAND_ROWS: usize = 192;
@@ -169,10 +172,11 @@ impl<W: Write + Seek + Send, K: TiffKind<OffsetType: Send> + Send> Sink for Stri
     type Coded = Vec<Vec<u8>>;
 
     fn put(&mut self, coded: Self::Coded) -> Result<(), Error> {
-        for strip in coded {
+        for mut strip in coded {
+            self.lengths.push(K::convert_offset(strip.len() as u64).map_err(error)?);
+            strip.resize(strip.len().next_multiple_of(EVEN), 0);
             let offset = self.entries.write_data(&strip[..]).map_err(error)?;
             self.offsets.push(K::convert_offset(offset).map_err(error)?);
-            self.lengths.push(K::convert_offset(strip.len() as u64).map_err(error)?);
         }
         Ok(())
     }
@@ -216,9 +220,19 @@ pub(crate) fn write_fields<W: Write + Seek, K: TiffKind>(
                 (Type::SRATIONAL, v.iter().flat_map(|&(n, d)| [n, d]).flat_map(i32::to_ne_bytes).collect())
             }
         };
+        let (kind, bytes) = match (field.directory, field.tag) {
+            (Directory::Image, tag::IPTC) => as_longs(bytes),
+            _ => (kind, bytes),
+        };
         write_bytes(entries, field.tag, kind, &bytes)?;
     }
     Ok(())
+}
+
+/// A block of IPTC as Adobe and those after it store it: as if it were numbers of 32 bits.
+fn as_longs(mut block: Vec<u8>) -> (Type, Vec<u8>) {
+    block.resize(block.len().next_multiple_of(size_of::<u32>()), 0);
+    (Type::LONG, block)
 }
 
 /// Writes a value in the byte order of the machine, which is that of the file.
@@ -229,6 +243,9 @@ pub(crate) fn write_bytes<W: Write + Seek, K: TiffKind>(
     bytes: &[u8],
 ) -> Result<(), TiffError> {
     let entry: Entry = entries.write_entry_bytes(kind, bytes)?;
+    if bytes.len() > size_of::<K::OffsetType>() && !bytes.len().is_multiple_of(EVEN) {
+        entries.write_data(&[0_u8][..])?;
+    }
     entries.extend_from(&Entries::from_iter([(Tag::from_u16_exhaustive(tag), entry)]));
     Ok(())
 }
@@ -247,7 +264,6 @@ mod tests {
     use crate::testing::{assert_lossless, decoded, encoded, metadata, picture};
     use darkroot_colour::RgbSpace;
     use darkroot_photo::Samples;
-    use darkroot_photo::metadata::tag;
     use tiff::decoder::Decoder;
 
     const SRGB: PictureSpace = PictureSpace::Rgb(RgbSpace::SRGB);

@@ -261,7 +261,7 @@ impl Photo {
                 "width": plan.size().width, "height": plan.size().height,
                 "space": plan.picture_space().name(), "colours": colours,
                 "kelvin": plan.white.map(|w| w.kelvin), "tint": plan.white.map(|w| w.tint()),
-                "multipliers": plan.multipliers, "demosaic": plan.demosaic.name(), "gain": plan.gain,
+                "multipliers": plan.multipliers(), "demosaic": plan.demosaic().name(), "gain": plan.gain,
                 "notes": plan.notes,
             }))
         })?;

@@ -3,6 +3,7 @@
 use darkroot_photo::metadata::{Directory, Metadata, Value, tag};
 use flashraw::{PreviewEncoding, RawMetadata};
 
+use crate::maker_note;
 use crate::screen::Container;
 use crate::tiff::{Directories, EXIF_IFD, Entry, GPS_IFD};
 
@@ -92,6 +93,7 @@ fn fields(tiff: &Directories<'_>) -> Metadata {
             metadata.set(Directory::Image, entry.tag, Value::Bytes(block.to_vec()));
         }
     }
+    maker_note::complete(&mut metadata, tiff);
     metadata
 }
 

@@ -35,6 +35,13 @@ pub(crate) struct Directory {
     pub(crate) entries: Vec<Entry>,
 }
 
+impl Entry {
+    /// Where the value stands in the file.
+    pub(crate) fn place(&self) -> usize {
+        self.offset
+    }
+}
+
 impl Directory {
     /// The first integer of the entry with this tag.
     pub(crate) fn number(&self, tiff: &Directories<'_>, tag: u16) -> Option<u64> {
@@ -75,6 +82,18 @@ impl<'a> Directories<'a> {
             walked.chain(first, 0, &mut seen)?;
         }
         Ok(Some(walked))
+    }
+
+    /// One directory of bytes that have no header, and nothing below it.
+    pub(crate) fn one(bytes: &'a [u8], little_endian: bool, at: usize) -> Option<(Self, Directory)> {
+        let alone = Self { bytes, little_endian, big: false, all: Vec::new() };
+        let directory = alone.directory_at(at)?;
+        Some((alone, directory))
+    }
+
+    /// The directory at a place of the file.
+    pub(crate) fn directory_at(&self, at: usize) -> Option<Directory> {
+        self.directory(at as u64).ok().flatten().map(|(directory, _)| directory)
     }
 
     /// Follows a chain of directories from `offset`.
@@ -210,6 +229,11 @@ impl<'a> Directories<'a> {
                 place.copy_from_slice(&long[..size]);
             }
         }
+    }
+
+    /// Whether its numbers begin with their lowest byte.
+    pub(crate) fn is_little_endian(&self) -> bool {
+        self.little_endian
     }
 
     /// The whole file.

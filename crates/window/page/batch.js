@@ -22,6 +22,8 @@ export function build(element, routes) {
   parts.redo = h("input", { type: "checkbox", class: "switch" });
   parts.over = h("input", { type: "checkbox", class: "switch" });
   parts.sheet = h("input", { type: "checkbox", class: "switch" });
+  parts.collision = h("select", {});
+  parts.collisions = field("Files of one name", parts.collision, "RAW and DNG of one shot, for example: both would become one picture");
   parts.profile = h("p", { class: "told", hidden: true });
   parts.watch = h("div", { class: "journals" });
   parts.list = h("ul", { class: "batches" });
@@ -35,6 +37,7 @@ export function build(element, routes) {
         field("Format", parts.format),
         field("Colours", parts.chart),
         parts.profile,
+        parts.collisions,
         field("Everything again, also what is done", parts.redo),
         field("Replace pictures that are not from a batch", parts.over),
         field("Write a contact sheet", parts.sheet, "sheet.html beside the pictures"),
@@ -48,6 +51,8 @@ export function build(element, routes) {
       parts.detail));
 }
 
+files.addEventListener("change", () => { if (root) collisions(); });
+
 /** Shows the view; `only` names files that are to be developed. */
 export async function show(only, given) {
   if (only) chosen = only;
@@ -57,6 +62,7 @@ export async function show(only, given) {
     chosen?.length ? h("option", { value: "chosen" }, `${chosen.length} chosen ${chosen.length === 1 ? "photograph" : "photographs"}`) : null,
     h("option", { value: "all" }, "All that was opened, with folders in it"),
     files.chosen.size && !chosen?.length ? h("option", { value: "selection" }, `The ${files.chosen.size} chosen in the contact sheet`) : null);
+  collisions();
   parts.profile.hidden = !settings.profile;
   parts.profile.textContent = settings.profile ? `With the profile ${settings.profile}` : "";
   try {
@@ -65,6 +71,28 @@ export async function show(only, given) {
   } catch (error) {
     notice.fault(error);
   }
+}
+
+let listed = null;
+
+/** Offers what can become of files whose pictures would have one name, where there are some. */
+function collisions() {
+  if (files.all === listed) return;
+  listed = files.all;
+  const kinds = new Map();
+  for (const { file } of files.all) {
+    const [, stem, ending] = /^(.*)\.([^./]*)$/.exec(file.toLowerCase()) ?? [null, file, ""];
+    kinds.set(stem, [...(kinds.get(stem) ?? []), ending]);
+  }
+  const endings = [...new Set([...kinds.values()].filter((all) => all.length > 1).flat())].sort();
+  const kept = parts.collision.value;
+  parts.collisions.hidden = endings.length === 0;
+  fill(parts.collision, [
+    ["", "Say so, and do nothing"],
+    ["suffix", "All of them, with the ending in the name"],
+    ["skip", "The first of them"],
+    ...endings.map((ending) => [`prefer:${ending}`, `The ${ending.toUpperCase()}, where there is one`]),
+  ].map(([value, text]) => h("option", { value, selected: value === kept }, text)));
 }
 
 async function folders() {
@@ -114,7 +142,7 @@ async function start() {
   try {
     const begun = await post("batch", {
       inputs: inputs(), out: parts.root.value + out, settings: more, redo: parts.redo.checked, overwrite: parts.over.checked,
-      chart_shot: parts.chart.value || null, sheet: parts.sheet.checked,
+      chart_shot: parts.chart.value || null, on_collision: (!parts.collisions.hidden && parts.collision.value) || null, sheet: parts.sheet.checked,
     });
     follow(begun.id);
     await list();

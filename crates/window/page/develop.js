@@ -1,14 +1,14 @@
 // Developing one photograph: the picture, the controls, and what the picture tells.
 
 import { address, post } from "./server.js";
-import { baseName, fill, h, isTyping, newestOnly, Notice, shown } from "./elements.js";
+import { baseName, fill, h, isTyping, newestOnly, Notice, painted, shown } from "./elements.js";
 import { Controls } from "./controls.js";
 import { CropTool } from "./crop.js";
 import { ExportPanel } from "./export.js";
 import { Histogram } from "./histogram.js";
 import { Picture } from "./picture.js";
 import { Readout } from "./readout.js";
-import { clipboard, draft as draftOf, hasDraft } from "./edits.js";
+import { clipboard, draft as draftOf, hasDraft, unsaved } from "./edits.js";
 import { files } from "./files.js";
 
 let root, go, picture, controls, histogram, readout, exports, table;
@@ -22,11 +22,10 @@ const parts = {};
 /** Settings that say where the picture lies in the frame: what is before the edits lies there, too. */
 const geometry = () => table.filter((one) => one.section === "Geometry").map((one) => one.name);
 
-const asked = () => ({ file: draft.file, edits: draft.edits, uncropped: tool instanceof CropTool });
+const asked = () => ({ file: files.current, edits: draft?.edits ?? unsaved(files.current), uncropped: tool instanceof CropTool });
 const askedBefore = () => {
   const names = new Set(geometry());
-  const edits = Object.fromEntries(Object.entries(draft.edits).filter(([name]) => names.has(name)));
-  return { file: draft.file, edits, uncropped: tool instanceof CropTool };
+  return { ...asked(), edits: Object.fromEntries(Object.entries(draft?.edits ?? {}).filter(([name]) => names.has(name))) };
 };
 
 export async function build(element, routes, described) {
@@ -100,6 +99,8 @@ export async function show(file) {
   }
   draft?.removeEventListener("change", changed);
   draft?.removeEventListener("commit", committed);
+  draft = null;
+  delete root.dataset.file;
   notice.clear();
   saved.clear();
   exports.close();
@@ -111,6 +112,9 @@ export async function show(file) {
   parts.name.textContent = baseName(file);
   parts.name.title = shown(file.slice(file.indexOf("/") + 1));
   parts.empty.hidden = true;
+  strip(false);
+  // A coarse picture is on its way before the page knows the edits: the server does.
+  const first = picture.update(true);
   try {
     const loaded = await draftOf(file);
     if (files.current !== file) return;
@@ -119,13 +123,17 @@ export async function show(file) {
     draft.addEventListener("commit", committed);
     controls.show(draft);
     committed();
+    root.dataset.file = file;
+    await first;
+    // The coarse one is to be on the screen before the processor is busy with the next.
+    await painted();
+    if (files.current !== file) return;
     picture.update();
   } catch (error) {
-    draft = null;
     fault(error);
   }
-  facts(file);
   strip();
+  facts(file);
 }
 
 async function facts(file) {
@@ -138,14 +146,14 @@ async function facts(file) {
   parts.facts.title = parts.facts.textContent;
 }
 
-/** The photographs before and after this one. */
-function strip() {
+/** The photographs before and after this one; only their places while something else is wanted first. */
+function strip(withPictures = true) {
   const all = files.shown.length ? files.shown : files.all;
   const at = all.findIndex((one) => one.file === files.current);
   const near = at < 0 ? [] : all.slice(Math.max(0, at - 8), at + 9);
   fill(parts.strip, near.map(({ file, modified }) =>
     h("button", { class: `small ${file === files.current ? "now" : ""} ${hasDraft(file) ? "draft" : ""}`, title: baseName(file), "aria-label": baseName(file), "aria-current": file === files.current ? "true" : null, onclick: () => go.develop(file) },
-      h("img", { src: address("small", { file, v: modified }), alt: "", decoding: "async", draggable: false, onerror: (e) => { e.target.dataset.broken = ""; } }))));
+      h("img", { src: withPictures ? address("small", { file, v: modified }) : null, alt: "", decoding: "async", draggable: false, onerror: (e) => { e.target.dataset.broken = ""; } }))));
   parts.strip.hidden = near.length < 2;
   parts.strip.querySelector(".now")?.scrollIntoView({ block: "nearest", inline: "center" });
 }

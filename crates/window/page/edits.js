@@ -10,6 +10,9 @@ export const clipboard = { from: "", edits: {}, names: [] };
 /** Whether a file has changes that are not saved. */
 export const hasDraft = (file) => drafts.get(file)?.isDirty ?? false;
 
+/** Edits of a file that are not saved; `undefined` where its sidecar has them all. */
+export const unsaved = (file) => (hasDraft(file) ? drafts.get(file).edits : undefined);
+
 /** The changes of a file, begun from what is saved where there are none yet. */
 export async function draft(file) {
   const known = drafts.get(file);

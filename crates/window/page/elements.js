@@ -98,6 +98,13 @@ export function later(milliseconds, work) {
   };
 }
 
+/** Waits until what was changed on the page is on the screen: the second frame begins when the first is there. A page that is
+ * not shown waits for nothing. */
+export function painted() {
+  if (document.hidden) return Promise.resolve();
+  return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+}
+
 /** Whether a key goes to a field that takes it. */
 export function isTyping(event) {
   return event.target.closest?.("input:not([type=range]):not([type=checkbox]), textarea, select") !== null;

@@ -29,7 +29,7 @@ class Files extends EventTarget {
     const there = new Set(this.all.map((one) => one.file));
     for (const file of [...this.chosen]) if (!there.has(file)) this.chosen.delete(file);
     this.#changed();
-    this.loadStates();
+    setTimeout(() => this.loadStates().catch(() => {}), HEAD_START);
     this.read(this.all.map((one) => one.file));
   }
 

@@ -11,7 +11,13 @@ const UNDER = 44;
 const wanted = { text: "", sort: "name", down: false, camera: "", stars: 0, state: "" };
 const notice = new Notice();
 const cells = new Map();
-let width = 190;
+/** Pixels of the longer side below which a picture is coarse. */
+const COARSE = 300;
+const REFINED_AT_ONCE = 3;
+/** Coarse pictures, and those that are on their way. */
+const refined = [];
+const waited = new Set();
+let width = innerWidth < 2800 ? 190 : 280;
 let columns = 1;
 let focused = 0;
 let anchor = 0;
@@ -132,6 +138,7 @@ function draw() {
   for (const [file, cell] of cells) {
     if (seen.has(file)) continue;
     // What is not looked at any more need not be loaded.
+    waited.delete(cell.image);
     cell.image.src = "";
     cell.element.remove();
     cells.delete(file);
@@ -150,9 +157,19 @@ function made(file, modified) {
     badge: h("span", { class: "badge" }),
   };
   const picture = h("div", { class: "thumb" }, image, cell.badge);
-  image.onload = () => picture.classList.add("there");
-  image.onerror = () => { if (image.getAttribute("src")) picture.classList.add("broken"); };
-  image.src = address("small", { file, v: modified });
+  const fine = address("small", { file, v: modified });
+  image.onload = () => {
+    picture.classList.add("there");
+    if (Math.max(image.naturalWidth, image.naturalHeight) < COARSE && image.src !== fine) refined.push({ image, fine });
+    arrived(image);
+  };
+  image.onerror = () => {
+    if (!image.getAttribute("src")) return;
+    picture.classList.add("broken");
+    arrived(image);
+  };
+  waited.add(image);
+  image.src = address("small", { file, v: modified, quick: true });
   cell.element = h("div", {
     class: "cell",
     role: "option",
@@ -163,6 +180,21 @@ function made(file, modified) {
   cells.set(file, cell);
   canvas.append(cell.element);
   return cell;
+}
+
+function arrived(image) {
+  waited.delete(image);
+  refine();
+}
+
+/** Coarse pictures become fine ones when none is missing any more, a few at a time. */
+function refine() {
+  while (waited.size < REFINED_AT_ONCE && refined.length) {
+    const { image, fine } = refined.shift();
+    if (!image.isConnected) continue;
+    waited.add(image);
+    image.src = fine;
+  }
 }
 
 function place(cell, i, file, height) {

@@ -4,9 +4,10 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 
-use darkroot::{Analysis, Photo, ProfileStore, Settings};
+use darkroot::settings::FromChart;
+use darkroot::{Analysis, Photo, Plan, ProfileStore, Settings, ToldByChart};
 use darkroot_batch::facts::modified;
-use darkroot_develop::Look;
+use darkroot_develop::{Kept, Look};
 
 use crate::fault::Fault;
 use crate::roots::Place;
@@ -21,8 +22,35 @@ const SAMPLES: usize = 250_000_000;
 pub(crate) struct Open {
     pub(crate) photo: Photo,
     pub(crate) analysis: Analysis,
+    /// The view of the whole that was rendered last, as far as a slider may leave it as it is.
+    pub(crate) kept: Kept,
     /// What its picture was developed from.
     pub(crate) path: PathBuf,
+    /// What the shot of a chart told that was asked for last.
+    told: Mutex<Option<(FromChart, Arc<ToldByChart>)>>,
+}
+
+impl Open {
+    /// How a picture is made of it.
+    pub(crate) fn plan(&self, store: &ProfileStore, settings: &Settings) -> Result<Plan, Fault> {
+        let Some(told) = self.told_by_chart(settings)? else {
+            let plan = self.photo.plan(&self.analysis, store, settings);
+            return plan.map_err(|e| Fault::unusable(format!("{}: {e}", darkroot::shown(&self.path))));
+        };
+        let plan = self.photo.plan_by_chart(&self.path, &self.analysis, store, settings, &told);
+        plan.map_err(|e| Fault::unusable(e.to_string()))
+    }
+
+    fn told_by_chart(&self, settings: &Settings) -> Result<Option<Arc<ToldByChart>>, Fault> {
+        let mut last = locked(&self.told);
+        if let Some((_, told)) = last.as_ref().filter(|(asked, _)| *asked == settings.chart) {
+            return Ok(Some(Arc::clone(told)));
+        }
+        let told = self.photo.told_by_chart(&self.path, settings);
+        let told = told.map_err(|e| Fault::unusable(e.to_string()))?.map(Arc::new);
+        *last = told.clone().map(|told| (settings.chart.clone(), told));
+        Ok(told)
+    }
 }
 
 /// A file as it was when it was read, and how. Another state of it, or another decoder, is another photograph.
@@ -111,5 +139,5 @@ fn decode(place: &Place, store: &ProfileStore, settings: &Settings) -> Result<Op
     let bytes = place.read()?;
     let photo = darkroot::job::opened(&place.path, &bytes, settings, store)?;
     let analysis = photo.analyse_as_asked();
-    Ok(Open { photo, analysis, path: place.path.clone() })
+    Ok(Open { photo, analysis, kept: Kept::default(), path: place.path.clone(), told: Mutex::default() })
 }

@@ -38,10 +38,11 @@ pub(crate) fn spot(
 ) -> Result<Spot, Fault> {
     let seen = shown(settings.clone(), gamut);
     // The white of all of them is that of the picture as it is shown.
-    let plan = plan(open, store, &seen)?;
-    let balance = Balance::Multipliers(plan.multipliers.map(f64::from));
+    let plan = open.plan(store, &seen)?;
+    let balance = Balance::Multipliers(plan.multipliers().map(f64::from));
     let measured = |space: OutputSpace, look: Look| {
         let mut other = seen.clone();
+        other.chart.balance = false;
         let recipe = &mut other.recipe;
         // What is measured lies where it is shown.
         if recipe.geometry.lens == Lens::Auto && recipe.look != Look::Linear {
@@ -63,7 +64,7 @@ pub(crate) fn spot(
         height: SIDE.min(size.height),
     };
     let picture = |settings: &Settings| -> Result<Picture, Fault> {
-        let rendered = self::plan(open, store, settings)?.render(View::of(rect), &Cancel::default());
+        let rendered = open.plan(store, settings)?.render(View::of(rect), &Cancel::default());
         rendered.map_err(|e| Fault::conflict(e.to_string()))
     };
     let light = mean(&picture(&linear)?);
@@ -76,11 +77,6 @@ pub(crate) fn spot(
         lab: [lab.l, lab.a, lab.b],
         output: mean(&for_screen(picture(&seen)?, gamut)),
     })
-}
-
-fn plan(open: &Open, store: &ProfileStore, settings: &Settings) -> Result<darkroot::Plan, Fault> {
-    let plan = open.photo.plan(&open.analysis, store, settings);
-    plan.map_err(|e| Fault::unusable(format!("{}: {e}", darkroot::shown(&open.path))))
 }
 
 /// Mean of a picture's samples.

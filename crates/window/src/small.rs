@@ -18,11 +18,21 @@ use crate::state::locked;
 const LONGEST: u32 = 640;
 /// An embedded picture of at least that side is looked for, pixels.
 const ENOUGH: u32 = 300;
+/// The same where it is to be there at once: the thumbnails of most cameras have 160 x 120 pixels.
+const ENOUGH_AT_ONCE: u32 = 120;
 /// Bytes of all that are kept.
 const KEPT: usize = 64 << 20;
 
-/// A small picture of a file as it was.
+/// A file as it was.
 type Identity = (String, u64, i64);
+
+/// A small picture, a JPEG in sRGB.
+#[derive(Clone)]
+struct Small {
+    jpeg: Arc<[u8]>,
+    /// Whether a finer one may be had with more work.
+    coarse: bool,
+}
 
 /// Small pictures that are kept, JPEG; those that were made first go first.
 #[derive(Default)]
@@ -30,51 +40,60 @@ pub(crate) struct Smalls(Mutex<Kept>);
 
 #[derive(Default)]
 struct Kept {
-    pictures: HashMap<Identity, Arc<[u8]>>,
+    pictures: HashMap<Identity, Small>,
     order: VecDeque<Identity>,
     bytes: usize,
 }
 
 impl Smalls {
-    /// The small picture of a file, a JPEG in sRGB.
-    pub(crate) fn of(&self, name: &str, place: &Place, store: &ProfileStore) -> Result<Arc<[u8]>, Fault> {
+    /// The small picture of a file, a JPEG in sRGB; `at_once` a coarse one will do.
+    pub(crate) fn of(
+        &self,
+        name: &str,
+        place: &Place,
+        store: &ProfileStore,
+        at_once: bool,
+    ) -> Result<Arc<[u8]>, Fault> {
         let data = std::fs::metadata(&place.path)
             .map_err(|e| Fault::missing(format!("{}: cannot be read: {e}", darkroot::shown(&place.path))))?;
         let identity = (name.to_owned(), data.len(), modified(&data));
-        if let Some(picture) = locked(&self.0).pictures.get(&identity) {
-            return Ok(Arc::clone(picture));
+        let kept = locked(&self.0).pictures.get(&identity).cloned();
+        if let Some(kept) = kept.filter(|kept| at_once || !kept.coarse) {
+            return Ok(kept.jpeg);
         }
         let bytes = place.read().map_err(|e| Fault::unusable(e.to_string()))?;
-        let picture: Arc<[u8]> = match embedded(&bytes) {
-            Some(jpeg) => jpeg,
-            None => developed(&bytes, place, store)?,
-        }
-        .into();
-        locked(&self.0).keep(identity, &picture);
-        Ok(picture)
+        let (jpeg, coarse) = match embedded(&bytes, if at_once { ENOUGH_AT_ONCE } else { ENOUGH }) {
+            Some((jpeg, longest)) => (jpeg, at_once && longest < ENOUGH as usize),
+            None => (developed(&bytes, place, store)?, false),
+        };
+        let small = Small { jpeg: jpeg.into(), coarse };
+        locked(&self.0).keep(identity, small.clone());
+        Ok(small.jpeg)
     }
 }
 
 impl Kept {
-    fn keep(&mut self, identity: Identity, picture: &Arc<[u8]>) {
-        if self.pictures.insert(identity.clone(), Arc::clone(picture)).is_none() {
-            self.bytes += picture.len();
-            self.order.push_back(identity);
+    fn keep(&mut self, identity: Identity, picture: Small) {
+        self.bytes += picture.jpeg.len();
+        match self.pictures.insert(identity.clone(), picture) {
+            Some(before) => self.bytes -= before.jpeg.len(),
+            None => self.order.push_back(identity),
         }
         while self.bytes > KEPT {
             let Some(first) = self.order.pop_front() else { break };
-            self.bytes -= self.pictures.remove(&first).map_or(0, |picture| picture.len());
+            self.bytes -= self.pictures.remove(&first).map_or(0, |picture| picture.jpeg.len());
         }
     }
 }
 
-/// The smallest embedded picture that is large enough, upright and no larger than it must be. `None` where there is none, or
-/// none that is sound.
-fn embedded(bytes: &[u8]) -> Option<Vec<u8>> {
-    let preview = darkroot_raw::preview_to_show(bytes, ENOUGH).ok()??;
-    let fits = preview.size.width.max(preview.size.height) <= LONGEST as usize;
+/// The smallest embedded picture whose longest side has `enough` pixels, upright and no larger than it must be. `None` where there is none, or
+/// none that is sound. With the longest side that it has as stored.
+fn embedded(bytes: &[u8], enough: u32) -> Option<(Vec<u8>, usize)> {
+    let preview = darkroot_raw::preview_to_show(bytes, enough).ok()??;
+    let longest = preview.size.width.max(preview.size.height);
+    let fits = longest <= LONGEST as usize;
     if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
-        return Some(preview.jpeg);
+        return Some((preview.jpeg, longest));
     }
     let mut reader = image::ImageReader::new(std::io::Cursor::new(&preview.jpeg));
     reader.set_format(image::ImageFormat::Jpeg);
@@ -99,7 +118,7 @@ fn embedded(bytes: &[u8]) -> Option<Vec<u8>> {
         samples[at..at + 3].copy_from_slice(&pixel.0);
     }
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
-    Some(screen::bytes(&picture, Sent::Jpeg, false).ok()?.0)
+    Some((screen::bytes(&picture, Sent::Jpeg, false).ok()?.0, longest))
 }
 
 /// What the engine makes of it with the defaults.

@@ -115,8 +115,14 @@ fn told(seen: &Seen) -> Told {
     if seen.history.damaged > 0 {
         notes.push(format!("{} torn or damaged lines of the journal are passed over", seen.history.damaged));
     }
+    // Also what this run is not about, which an earlier one was.
+    let total = seen.history.files.map(|files| files.max(outputs.len()));
+    let left = total.map(|total| total.saturating_sub(done.len() + failed.len()) as f64);
+    let each = megapixels(&seen.history) / done.len().max(1) as f64;
     Told {
         kind: "watched",
+        total,
+        left: left.zip(rate.filter(|rate| *rate > 0.0)).map(|(left, rate)| (left * each / rate).round()),
         phase: match (at_work.is_empty(), quiet) {
             (_, false) => Phase::Running,
             // It was ended in the midst of something.

@@ -208,7 +208,7 @@ fn the_white_is_found_in_pictures() {
                 let recipe = Recipe { balance: Balance::Auto, ..Recipe::default() };
                 let settings = Settings { recipe, ..Settings::default() };
                 let plan = photo.plan(&photo.analyse_as_asked(), &store, &settings).unwrap();
-                errors[0].push(angle(plan.multipliers.map(|m| 1.0 / f64::from(m)), right));
+                errors[0].push(angle(plan.multipliers().map(|m| 1.0 / f64::from(m)), right));
                 for (errors, found) in errors[1..].iter_mut().zip(classics(&blocks)) {
                     errors.push(angle(found, right));
                 }

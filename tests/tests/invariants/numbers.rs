@@ -122,7 +122,7 @@ fn camera_rgb_is_the_balanced_samples_themselves() {
     let picture = pixels(&darkroot_tests::rendered(&plan));
     for (pixel, seen) in picture.iter().zip(mosaic.samples.chunks_exact(3)) {
         for c in 0..3 {
-            let balanced = f64::from(seen[c] * plan.multipliers[c]);
+            let balanced = f64::from(seen[c] * plan.multipliers()[c]);
             assert!((pixel[c] - balanced).abs() < 1e-6, "{pixel:?} {seen:?}");
         }
     }

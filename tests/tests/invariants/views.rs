@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use darkroot_colour::RgbSpace;
 use darkroot_colour::difference::de2000;
-use darkroot_develop::{Analysis, Cancel, Cancelled, Crop, Recipe, Scale, View};
+use darkroot_develop::{
+    Analysis, Balance, Bits, Cancel, Cancelled, Crop, Highlights, Kept, Look, Recipe, Scale, View,
+};
 use darkroot_photo::{Capture, Layout, Orientation, Picture, Rect, Samples, Size};
 use darkroot_simulate::expose::expose;
 use darkroot_simulate::{Exposure, Scene};
-use darkroot_tests::{camera, lab, layouts, pixels, plan, rendered};
+use darkroot_tests::{camera, lab, layouts, output, pixels, plan, rendered};
 
 const SIZE: Size = Size { width: 187, height: 131 };
 
@@ -106,6 +108,54 @@ fn a_smaller_view_shows_what_the_whole_picture_reduced_shows() {
             assert!(off < most, "{name} 1/{}: {off}", scale.bin());
         }
     }
+}
+
+#[test]
+fn a_view_that_is_rendered_again_is_the_same_whatever_was_kept_of_it() {
+    // What moves between two renderings, and whether the camera RGB before it serves again.
+    type Move = fn(&mut Recipe);
+    let moves: [(&str, bool, Move); 11] = [
+        ("nothing", true, |_| {}),
+        ("exposure", true, |recipe| recipe.exposure.stops = 1.3),
+        ("look", true, |recipe| recipe.look = Look::Vivid),
+        ("contrast", true, |recipe| recipe.tones.contrast = 0.3),
+        ("space", true, |recipe| recipe.output = output(RgbSpace::ADOBE_RGB, Bits::Sixteen)),
+        ("white balance", false, |recipe| recipe.balance = Balance::Multipliers([1.9, 1.0, 1.4])),
+        ("noise", false, |recipe| recipe.denoise.amount = Some(0.0)),
+        ("highlights", false, |recipe| recipe.highlights = Highlights::Clip),
+        ("crop", false, |recipe| recipe.crop = Crop::Rect { x: 8, y: 4, width: 90, height: 60 }),
+        ("straightened", false, |recipe| recipe.geometry.straighten = 1.5),
+        ("exposure when straightened", true, |recipe| recipe.exposure.stops = -0.5),
+    ];
+    for (name, capture) in captures() {
+        let analysis = Analysis::of(Arc::new(capture));
+        for scale in [Scale::FULL, Scale::HALF, Scale::QUARTER] {
+            let (kept, cancel) = (Kept::default(), Cancel::default());
+            let mut recipe = Recipe::default();
+            for (i, (what, serves, change)) in moves.iter().enumerate() {
+                change(&mut recipe);
+                let plan = darkroot_develop::plan(&analysis, None, &recipe).unwrap();
+                let view = plan.whole(scale);
+                if i > 0 && !(name.starts_with("linear RGB") && *what == "noise") {
+                    assert_eq!(plan.is_kept(view, &kept), *serves, "{name} 1/{}: {what}", scale.bin());
+                }
+                let again = plan.render_again(view, &kept, &cancel).unwrap();
+                assert!(plan.is_kept(view, &kept), "{name}: {what}");
+                assert!(again == plan.render(view, &cancel).unwrap(), "{name} 1/{}: {what}", scale.bin());
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_is_kept_of_another_photograph_or_another_view() {
+    let (kept, cancel) = (Kept::default(), Cancel::default());
+    let one = plan(&bayer(), None, &Recipe::default()).unwrap();
+    one.render_again(one.whole(Scale::HALF), &kept, &cancel).unwrap();
+    assert!(one.is_kept(one.whole(Scale::HALF), &kept));
+    assert!(!one.is_kept(one.whole(Scale::QUARTER), &kept));
+    let another = plan(&bayer(), None, &Recipe::default()).unwrap();
+    assert!(!another.is_kept(another.whole(Scale::HALF), &kept));
 }
 
 #[test]

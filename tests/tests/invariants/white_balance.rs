@@ -39,7 +39,7 @@ fn spot() -> Balance {
 /// Red over green and blue over green of the multipliers, as shares of the right ones.
 fn off(capture: &Capture, balance: Balance, right: [f64; 3]) -> (f64, f64) {
     let plan = darkroot_tests::plan(capture, None, &Recipe { balance, ..Recipe::default() }).unwrap();
-    let m = plan.multipliers.map(f64::from);
+    let m = plan.multipliers().map(f64::from);
     (m[0] / m[1] * right[0] / right[1] - 1.0, m[2] / m[1] * right[2] / right[1] - 1.0)
 }
 
@@ -50,7 +50,7 @@ fn as_shot_is_the_neutral_of_the_file() {
     let (red, blue) = off(&capture, Balance::AsShot, neutral);
     assert!(red.abs() < 1e-6 && blue.abs() < 1e-6, "{red} {blue}");
     let plan = darkroot_tests::plan(&capture, None, &Recipe::default()).unwrap();
-    assert!(plan.multipliers.iter().all(|&m| m >= 1.0) && plan.multipliers.contains(&1.0));
+    assert!(plan.multipliers().iter().all(|&m| m >= 1.0) && plan.multipliers().contains(&1.0));
 }
 
 #[test]
@@ -145,9 +145,9 @@ fn a_spot_counts_from_the_corner_of_what_is_shown() {
     let moved = Balance::Spot { x: x - dx, y: y - dy, side };
     let cropped =
         darkroot_tests::plan(&capture, None, &Recipe { balance: moved, ..Recipe::default() }).unwrap();
-    assert_eq!(whole.multipliers, cropped.multipliers);
+    assert_eq!(whole.multipliers(), cropped.multipliers());
     let recipe = Recipe { balance: spot(), crop: Crop::Active, ..Recipe::default() };
-    assert_eq!(darkroot_tests::plan(&capture, None, &recipe).unwrap().multipliers, whole.multipliers);
+    assert_eq!(darkroot_tests::plan(&capture, None, &recipe).unwrap().multipliers(), whole.multipliers());
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn a_file_without_a_white_balance_gets_one_from_the_picture_and_says_so() {
     assert!(plan.notes.iter().any(|n| n.contains("estimated")), "{:?}", plan.notes);
     let auto = darkroot_tests::plan(&capture, None, &Recipe { balance: Balance::Auto, ..Recipe::default() })
         .unwrap();
-    assert_eq!(plan.multipliers, auto.multipliers);
+    assert_eq!(plan.multipliers(), auto.multipliers());
 }
 
 #[test]

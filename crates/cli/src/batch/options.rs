@@ -32,7 +32,7 @@ pub(crate) struct Work {
 
     /// When several inputs would become one output: refuse (do nothing, list them), suffix (DSC_1-dng.jpg), skip (the first
     /// one is developed), or prefer:nef,dng (the one with the first of these endings is)
-    #[arg(long, value_name = "WAY", value_parser = on_collision, default_value = "refuse", help_heading = "Output")]
+    #[arg(long, value_name = "WAY", default_value = "refuse", help_heading = "Output")]
     on_collision: OnCollision,
 
     /// Replace pictures in OUT that are not from a batch, or were changed since
@@ -97,21 +97,6 @@ pub(crate) struct Work {
 
     #[command(flatten)]
     pub(crate) picture: Picture,
-}
-
-/// A way with outputs of one name.
-fn on_collision(text: &str) -> Result<OnCollision, String> {
-    let ending = |text: &str| text.trim().trim_start_matches('.').to_lowercase();
-    let preferred = text.strip_prefix("prefer").map(|rest| rest.trim_start_matches([':', '=', ' ']));
-    match (text, preferred) {
-        ("refuse", _) => Ok(OnCollision::Refuse),
-        ("suffix", _) => Ok(OnCollision::Suffix),
-        ("skip", _) => Ok(OnCollision::Skip),
-        (_, Some(endings)) if !endings.is_empty() => {
-            Ok(OnCollision::Prefer(endings.split(',').map(ending).collect()))
-        }
-        _ => Err("use refuse, suffix, skip or prefer:nef,dng".to_owned()),
-    }
 }
 
 impl Work {

@@ -191,12 +191,32 @@ fn what_is_asked_for_counts_most_and_what_is_not_wanted_stays_out() {
 }
 
 #[test]
-fn a_sidecar_that_cannot_be_read_is_told_and_can_be_left_out() {
+fn a_sidecar_that_cannot_be_read_is_left_out_with_a_note() {
     let desk = Desk::with_dng();
     desk.put("a.dng.xmp", "<x:xmpmeta");
-    desk.fails(2, &["develop", "a.dng"], &["a.dng.xmp", "no XMP", "metadata"]);
-    desk.develop(&["a.dng", "--metadata", "basic"]);
+    let told = desk.run(&["develop", "a.dng", "-v"]);
+    assert_eq!(told.code, 0, "{}", told.err);
+    for words in ["a.dng.xmp", "no XMP", "mend"] {
+        assert!(told.err.contains(words), "{words}: {}", told.err);
+    }
+    desk.develop(&["a.dng", "-o", "basic.jpg", "--metadata", "basic"]);
     desk.fails(2, &["develop", "a.dng", "--set-tag", "Rating=4"], &["set-tag", "PREFIX:NAME=VALUE"]);
+}
+
+#[test]
+fn a_broken_sidecar_costs_a_batch_nothing_but_what_it_says() {
+    let desk = Desk::with_dng();
+    desk.put("b.dng", std::fs::read(desk.path("a.dng")).unwrap());
+    desk.put("a.xmp", SIDECAR);
+    desk.put("b.xmp", "no XMP at all");
+    let batch = || desk.run(&["batch", "a.dng", "b.dng", "-o", "out", "-v"]);
+    let told = batch();
+    assert_eq!(told.code, 0, "{}", told.err);
+    assert!(told.err.contains("b.xmp"), "{}", told.err);
+    assert!(holds(&desk, "out/a.jpg", b"lake</rdf:li>") && !holds(&desk, "out/b.jpg", b"lake</rdf:li>"));
+    desk.put("b.xmp", SIDECAR);
+    assert_eq!(batch().code, 0);
+    assert!(holds(&desk, "out/b.jpg", b"lake</rdf:li>"));
 }
 
 #[test]

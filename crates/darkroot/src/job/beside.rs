@@ -25,8 +25,7 @@ pub(super) struct Beside<'a> {
 
 impl Beside<'_> {
     /// The encoder's options, with all that the file holds beside the picture.
-    pub(super) fn options(&self, notes: &mut Vec<String>) -> Result<Options, Error> {
-        let mut options = self.settings.encode.clone();
+    pub(super) fn options(&self, mut options: Options, notes: &mut Vec<String>) -> Result<Options, Error> {
         if self.format == Format::Dng {
             let facts = dng::facts(self.input, self.capture, self.plan, self.look()?);
             let dng = facts.map_err(|source| Error::Dng { path: self.input.to_owned(), source })?;

@@ -14,8 +14,9 @@ use darkroot_photo::{Capture, Metadata, Picture};
 
 use crate::files::{self, Failed, Output};
 use crate::from_chart::Told;
-use crate::metadata::{About, of_picture};
+use crate::metadata::{About, Keep, of_picture};
 use crate::photo::Photo;
+use crate::planned::planned;
 use crate::settings::{Engine, Settings};
 use crate::store::{ChosenProfile, ProfileStore};
 use crate::{Error, Job, dng, from_chart, hdr, lut, provenance};
@@ -107,7 +108,7 @@ pub fn develop_into(
     let mut recipe =
         settings.resolve(format).map_err(|e| Error::Settings { path: output.clone(), source: e })?;
     recipe.lut = lut::Last::default().of(settings)?;
-    let (asked, mut encode) = (recipe.clone(), settings.encode.clone());
+    let (asked, mut encode) = (recipe.clone(), encoding(settings));
     if format == Format::Dng {
         recipe = dng::samples(&asked);
     } else if format == Format::Avif && settings.hdr > 0.0 {
@@ -123,10 +124,10 @@ pub fn develop_into(
         Engine::Darkroot => {
             let chosen = photo.profile(store, settings).map_err(|fault| fault.about(input))?;
             let analysis = photo.analyse_as_asked();
-            let planned = |recipe: &Recipe| {
+            let plan_of = |recipe: &Recipe| {
                 plan(input, (&photo, &analysis), chosen.as_ref(), settings, recipe, told.as_ref())
             };
-            let (plan, report) = planned(&recipe)?;
+            let (plan, report) = plan_of(&recipe)?;
             let beside = Beside {
                 input,
                 capture: photo.capture(),
@@ -134,10 +135,10 @@ pub fn develop_into(
                 format,
                 asked: &asked,
                 plan: &plan,
-                planned: &|recipe| Ok(planned(recipe)?.0),
+                planned: &|recipe| Ok(plan_of(recipe)?.0),
                 cancel,
             };
-            encode = beside.options(&mut notes)?;
+            encode = beside.options(encode, &mut notes)?;
             if let Some(seen) = control.seen.take_if(|_| beside.is_for_no_screen()) {
                 seen(&beside.look()?);
             }
@@ -188,6 +189,7 @@ pub fn develop_into(
         })?;
     }
     notes.append(&mut report.notes);
+    notes.extend(settings.about.left_out.clone());
     notes.dedup();
     if encode.peak.is_some() {
         report.space = hdr::SPACE.to_owned();
@@ -240,6 +242,12 @@ fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sampl
     })
 }
 
+/// How a picture is encoded: with a thumbnail where it says all that it can.
+fn encoding(settings: &Settings) -> darkroot_encode::Options {
+    let thumbnail = settings.about.keep == Keep::All;
+    darkroot_encode::Options { thumbnail, ..settings.encode.clone() }
+}
+
 /// Writes the output through `fill`, whole or not at all.
 fn write_file(
     to: Output,
@@ -288,32 +296,11 @@ fn plan(
     recipe: &Recipe,
     told: Option<&Told>,
 ) -> Result<(Plan, Report), Error> {
-    let mut recipe = recipe.clone();
     let profile = chosen.map(|c| c.profile.as_ref());
-    if let Some(told) = told {
-        told.check(input, photo.capture())?;
-        if settings.chart.balance {
-            recipe.balance = told.balance(None);
-        }
-    }
-    let planned = |recipe: &Recipe| {
-        let plan = photo.plan_with(analysis, profile, recipe.clone());
-        plan.map_err(|source| Error::Plan { path: input.to_owned(), source })
-    };
-    let mut plan = planned(&recipe)?;
-    if let Some(told) = told.filter(|_| settings.chart.balance) {
-        // The white tells the light, and that how the greys look in it.
-        let light =
-            provenance::light_of(settings, profile, &plan).and_then(|name| provenance::by_name(&name));
-        recipe.balance = told.balance(light.as_ref());
-        plan = planned(&recipe)?;
-    }
+    let plan = planned(input, photo, analysis, chosen, settings, recipe, told)?;
     let camera_output = recipe.output.space == OutputSpace::Camera;
     let capture = photo.capture();
     let mut notes = plan.notes.clone();
-    if let Some(told) = told {
-        notes.extend(told.expose(&mut plan, recipe.exposure.stops, capture));
-    }
     if !camera_output && settings.light.is_none() {
         notes.extend(profile.zip(plan.white).and_then(|(profile, white)| far_light(profile, white)));
     }
@@ -323,8 +310,8 @@ fn plan(
         profile: chosen.filter(|c| !camera_output && !c.estimated).map(|c| c.place.clone().into_owned()),
         kelvin: plan.white.map(|w| w.kelvin),
         tint: plan.white.map(|w| w.tint()),
-        multipliers: plan.multipliers,
-        demosaic: plan.demosaic.name().to_owned(),
+        multipliers: plan.multipliers(),
+        demosaic: plan.demosaic().name().to_owned(),
         gain: plan.gain,
         notes,
         ..blank_report(input, capture, plan.size(), &plan.picture_space(), recipe.output.bits)

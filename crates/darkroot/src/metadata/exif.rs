@@ -45,13 +45,21 @@ pub(super) fn set(fields: &mut Metadata, said: &Xmp) {
         }
     }
     for (tag, space, local) in SHOT {
-        if let Some(text) = said.text(space, local).filter(|_| fields.get(Directory::Exif, tag).is_none()) {
+        let better = |known: &str| tag == tag::LENS_MODEL && has_only_numbers(known);
+        let wanted = fields.text(Directory::Exif, tag).is_none_or(better);
+        if let Some(text) = said.text(space, local).filter(|_| wanted) {
             fields.set(Directory::Exif, tag, Value::Text(text));
         }
     }
     // The standard's place for it is XMP; cameras and Windows have one of their own in Exif.
     fields.retain(|field| field.directory != Directory::Image || !tag::RATING.contains(&field.tag));
     place(fields, said);
+}
+
+/// Whether a lens goes by its focal lengths and f-numbers alone ("18.0-55.0 mm f/3.5-5.6").
+fn has_only_numbers(lens: &str) -> bool {
+    let mut words = lens.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty());
+    words.all(|word| matches!(word, "mm" | "f" | "F"))
 }
 
 /// The position, where properties state one.
@@ -95,6 +103,20 @@ fn angle(text: &str, sides: [char; 2]) -> Option<(char, Vec<(u32, u32)>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_lens_that_goes_by_numbers_gets_the_name_that_a_sidecar_knows() {
+        let named = |known: &str| {
+            let mut fields = Metadata::default();
+            fields.set(Directory::Exif, tag::LENS_MODEL, Value::Text(known.into()));
+            let mut said = Xmp::default();
+            said.set(AUX, "Lens", super::super::xmp::Said::text("AF-S DX 18-55mm"));
+            set(&mut fields, &said);
+            fields.text(Directory::Exif, tag::LENS_MODEL).map(str::to_owned)
+        };
+        assert_eq!(named("18.0-55.0 mm f/3.5-5.6").as_deref(), Some("AF-S DX 18-55mm"));
+        assert_eq!(named("EF24-105mm f/4L").as_deref(), Some("EF24-105mm f/4L"));
+    }
 
     #[test]
     fn positions_are_read_in_both_forms() {

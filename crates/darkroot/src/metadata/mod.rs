@@ -18,7 +18,7 @@ use darkroot_photo::metadata::{Directory, Field, Metadata, Value, tag};
 
 use crate::VERSION;
 pub use rating::{rating, with_rating};
-pub(crate) use sidecar::beside;
+pub(crate) use sidecar::{Beside, beside};
 pub(crate) use spaces::DARKROOT;
 use spaces::{DC, EXIF, XMP, is_of_the_raw_file};
 pub(crate) use tags::{Tag, parse as parse_tags};
@@ -52,6 +52,8 @@ pub struct About {
     pub(crate) tags: Vec<Tag>,
     /// What the photograph's sidecar says.
     pub(crate) sidecar: Option<Arc<Xmp>>,
+    /// Which sidecar could not be used, and why.
+    pub(crate) left_out: Option<String>,
 }
 
 /// What the picture of a capture says; of its size and colours the encoder says what holds. `provenance` has names and values of how a reproduction came about.

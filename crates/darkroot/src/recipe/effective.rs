@@ -9,7 +9,7 @@ use darkroot_encode::Format;
 
 use super::written::written;
 use super::{Layer, Origin, RecipeError};
-use crate::metadata::{self, Xmp};
+use crate::metadata::{self, Beside, Xmp};
 use crate::naming::{NamingError, Target};
 use crate::settings::{Key, Settings};
 
@@ -19,16 +19,19 @@ pub struct Effective {
     values: BTreeMap<Key, (String, Origin)>,
     /// What the photograph's sidecar of XMP says, as a packet.
     said: Option<String>,
+    /// Which sidecar of XMP could not be used, and why.
+    left_out: Option<String>,
 }
 
-/// What the sidecar says goes by this name among [`texts`](Effective::texts).
+/// What the sidecar says, and which one was left out, go by these names among [`texts`](Effective::texts).
 const SAID: &str = "sidecar";
+const LEFT_OUT: &str = "sidecar-left-out";
 
 impl Default for Effective {
     /// The defaults.
     fn default() -> Self {
         let value = |key: Key| (key, (key.default_text().to_owned(), Origin::Default));
-        Self { values: Key::all().map(value).collect(), said: None }
+        Self { values: Key::all().map(value).collect(), said: None, left_out: None }
     }
 }
 
@@ -41,11 +44,11 @@ impl Effective {
     }
 
     /// Takes what stands in the sidecar of XMP beside a photograph, if that goes into its picture.
-    pub(super) fn read_sidecar(&mut self, input: &Path) -> Result<(), RecipeError> {
+    pub(super) fn read_sidecar(&mut self, input: &Path) {
         if matches!(self.get(Key::METADATA).0, "all" | "no-gps") {
-            self.said = metadata::beside(input).map_err(|message| RecipeError::Sidecar { message })?;
+            let Beside { packet, left_out } = metadata::beside(input);
+            (self.said, self.left_out) = (packet, left_out);
         }
-        Ok(())
     }
 
     /// The text of a key and where it is from.
@@ -71,6 +74,7 @@ impl Effective {
             let said = Xmp::parse(packet).map_err(|message| RecipeError::Sidecar { message })?;
             settings.about.sidecar = Some(Arc::new(said));
         }
+        settings.about.left_out.clone_from(&self.left_out);
         Ok(settings)
     }
 
@@ -118,8 +122,13 @@ impl Effective {
 
     /// Name and text of every key: all that another process must know to make the same picture.
     pub fn texts(&self) -> BTreeMap<String, String> {
-        let said = self.said.iter().map(|said| (SAID.to_owned(), said.clone()));
-        self.values.iter().map(|(key, (text, _))| (key.name().to_owned(), text.clone())).chain(said).collect()
+        let beside = [(SAID, &self.said), (LEFT_OUT, &self.left_out)];
+        let beside = beside.into_iter().filter_map(|(name, text)| Some((name.to_owned(), text.clone()?)));
+        self.values
+            .iter()
+            .map(|(key, (text, _))| (key.name().to_owned(), text.clone()))
+            .chain(beside)
+            .collect()
     }
 
     /// What [`texts`](Self::texts) gave; keys that are missing have their defaults. Where the values were from
@@ -132,10 +141,10 @@ impl Effective {
             let key = Key::from_name(name).ok_or_else(|| RecipeError::Name { name: name.clone() })?;
             Ok((key, text.clone()))
         };
-        let values: Vec<(Key, String)> =
-            texts.iter().filter(|(name, _)| *name != SAID).map(named).collect::<Result<_, RecipeError>>()?;
-        let said = texts.get(SAID).cloned();
-        let mut effective = Self { said, ..Self::default() };
+        let settings = texts.iter().filter(|(name, _)| ![SAID, LEFT_OUT].contains(&name.as_str()));
+        let values: Vec<(Key, String)> = settings.map(named).collect::<Result<_, RecipeError>>()?;
+        let beside = |name| texts.get(name).cloned();
+        let mut effective = Self { said: beside(SAID), left_out: beside(LEFT_OUT), ..Self::default() };
         effective.lay(&Layer::flags(values)?);
         Ok(effective)
     }

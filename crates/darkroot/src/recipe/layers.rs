@@ -75,7 +75,7 @@ impl Layers {
             effective.lay(layer);
         }
         if self.folders {
-            effective.read_sidecar(input)?;
+            effective.read_sidecar(input);
         }
         Ok(effective)
     }

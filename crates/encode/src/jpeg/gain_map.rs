@@ -135,19 +135,24 @@ fn directory([first, second, place]: [u32; 3]) -> Vec<u8> {
     out
 }
 
-/// Writes the second picture behind the first, which has been written, and says in the first where. `header` is what the first
-/// began with.
-pub(super) fn settle(header: &[u8], second: &[u8], out: &mut Buffered<'_, '_>) -> Result<(), Error> {
+/// Writes the second picture behind the first, which has been written from `start` on with `header` as its beginning, and says in
+/// the first where it is.
+pub(super) fn settle(
+    header: &[u8],
+    start: u64,
+    second: &[u8],
+    out: &mut Buffered<'_, '_>,
+) -> Result<(), Error> {
     let mut settle = || -> std::io::Result<()> {
-        let end = out.stream_position()?;
+        let first = out.stream_position()? - start;
         out.write_all(second)?;
-        if let Some(start) = header.windows(MPF.len()).rposition(|w| w == MPF).map(|at| at + MPF.len()) {
-            let place = end as u32 - start as u32;
-            out.seek(SeekFrom::Start(start as u64))?;
-            out.write_all(&directory([end as u32, second.len() as u32, place]))?;
-            out.seek(SeekFrom::End(0))?;
+        let end = out.stream_position()?;
+        if let Some(at) = header.windows(MPF.len()).rposition(|w| w == MPF).map(|at| at + MPF.len()) {
+            let place = first as u32 - at as u32;
+            out.seek(SeekFrom::Start(start + at as u64))?;
+            out.write_all(&directory([first as u32, second.len() as u32, place]))?;
         }
-        Ok(())
+        out.seek(SeekFrom::Start(end)).map(drop)
     };
     settle().map_err(Error::Io)
 }

@@ -9,10 +9,11 @@ pub mod gain_map;
 mod header;
 mod progressive;
 mod tables;
+mod thumbnail;
 mod transform;
 mod units;
 
-use std::io::Write;
+use std::io::{Seek, Write};
 
 use darkroot_photo::Metadata;
 use darkroot_photo::metadata::Directory;
@@ -23,6 +24,7 @@ use crate::output::Buffered;
 use crate::{Error, Options, Sample, exif};
 
 use header::{END, Header};
+use thumbnail::Thumbnail;
 use units::{Scan, Subsampling};
 
 /// Bytes that a segment has for Exif: 65535, less its length (2) and "Exif\0\0" (6).
@@ -48,32 +50,57 @@ pub(crate) fn write<T: Sample>(
     let second = options.gain_map.as_ref().map(|map| gain_map::file(map)).transpose()?;
     let xmp = exif::xmp(metadata);
     let naming = second.as_ref().map(|second| gain_map::naming(xmp, second.len()));
+    let block = block_that_fits(metadata)?;
+    let mut thumbnail = Thumbnail::of(*size, space).filter(|_| options.thumbnail && !block.is_empty());
+    let with_place = thumbnail.as_ref().map(|_| exif::with_thumbnail(metadata, Some(&Thumbnail::place())));
+    if with_place.as_ref().is_some_and(|block| block.len() > EXIF_LIMIT) {
+        thumbnail = None;
+    }
     let header = Header {
         size: *size,
         subsampling,
         quality: options.quality,
         restart: if size.height > rows { (units * high) as u16 } else { 0 },
         profile: &profile_of(space),
-        exif: &block_that_fits(metadata)?,
+        exif: with_place.as_ref().filter(|_| thumbnail.is_some()).unwrap_or(&block),
         xmp: naming.as_deref().unwrap_or(xmp),
         more: if second.is_some() { &gain_map::segments() } else { &[] },
         iptc: exif::iptc(metadata),
     };
-    let bytes = if options.progressive { header.about() } else { header.bytes() };
-    out.write_all(&bytes).map_err(Error::Io)?;
+    let seen = |band: usize, samples: &[u8]| {
+        if let Some(thumbnail) = &thumbnail {
+            thumbnail.add(band * rows, size.width, samples);
+        }
+    };
+    // Where nothing is filled in later, the output need not know where it is.
+    let is_filled = thumbnail.is_some() || second.is_some();
+    let start = if is_filled { out.stream_position().map_err(Error::Io)? } else { 0 };
+    let begin = if options.progressive { header.about() } else { header.bytes() };
+    out.write_all(&begin).map_err(Error::Io)?;
     if options.progressive {
         let whole = Vec::with_capacity(3 * size.area());
-        let keep = |_, samples: &[T]| Ok(bytemuck::cast_slice::<T, u8>(samples).to_vec());
+        let keep = |band, samples: &[T]| {
+            let samples = bytemuck::cast_slice::<T, u8>(samples);
+            seen(band, samples);
+            Ok(samples.to_vec())
+        };
         let whole = bands::code(*size, rows, Whole(whole), keep, make)?;
         let scans = progressive::scans(*size, &whole.0, options)?;
         out.write_all(&scans).map_err(Error::Io)?;
-        return second.map_or(Ok(()), |second| gain_map::settle(&bytes, &second, out));
+    } else {
+        let scan = Scan::new(subsampling, options.quality);
+        let code = |band, samples: &[T]| {
+            let samples = bytemuck::cast_slice(samples);
+            seen(band, samples);
+            Ok(scan.encode(samples, size.width))
+        };
+        bands::code(*size, rows, RestartMarkers { out: &mut *out, next: None }, code, make)?;
+        out.write_all(&END).map_err(Error::Io)?;
     }
-    let scan = Scan::new(subsampling, options.quality);
-    let code = |_, samples: &[T]| Ok(scan.encode(bytemuck::cast_slice(samples), size.width));
-    let scan = bands::code(*size, rows, RestartMarkers { out, next: None }, code, make)?;
-    scan.out.write_all(&END).map_err(Error::Io)?;
-    second.map_or(Ok(()), |second| gain_map::settle(&bytes, &second, out))
+    if let Some(thumbnail) = thumbnail {
+        thumbnail.fill(&begin, start, out)?;
+    }
+    second.map_or(Ok(()), |second| gain_map::settle(&begin, start, &second, out))
 }
 
 /// All samples.

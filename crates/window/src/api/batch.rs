@@ -104,6 +104,8 @@ pub(crate) struct Start {
     /// Replace pictures that no journal knows.
     #[serde(default)]
     overwrite: bool,
+    /// What becomes of files whose pictures would have one name, as `--on-collision` has it; refused if this is missing.
+    on_collision: Option<String>,
     /// Shot of a chart that gives white balance and profile; `auto` looks for one in each folder.
     chart_shot: Option<String>,
     /// Whether a contact sheet is written beside the pictures, `sheet.html`.
@@ -152,6 +154,10 @@ fn request(shared: &Shared, start: Start) -> Result<Request, Fault> {
     let mut options = PlanOptions::into(&out.path);
     options.redo = start.redo;
     options.overwrite = start.overwrite;
+    if let Some(way) = &start.on_collision {
+        options.on_collision =
+            way.parse().map_err(|words| Fault::asked(format!("`on_collision`: {words}")))?;
+    }
     Ok(Request {
         search: Search { inputs, ..Search::default() },
         options,

@@ -41,7 +41,8 @@ pub(crate) struct Wanted {
     /// Whether all of the frame is shown, whatever the crop, to choose one.
     #[serde(default)]
     uncropped: bool,
-    /// Whether another is to follow at once: noise is left in, which halves the time, and the JPEG is smaller.
+    /// Whether another is to follow at once: where that saves time, noise is left in, and in the first one of a file all that
+    /// would have to be looked for in its samples; the JPEG is smaller.
     #[serde(default)]
     quick: bool,
 }
@@ -74,13 +75,13 @@ pub(crate) async fn render(
     let rendered = shared.latest.render(&place, move |cancel| {
         let start = Instant::now();
         let (open, settings) = opened(&task, &wanted.edited)?;
-        let mut settings = screen::shown(uncropped(settings, wanted.uncropped), wanted.gamut);
-        if wanted.quick {
-            settings.recipe.denoise.amount = Some(0.0);
-        }
-        let plan = plan(&task, &open, &settings)?;
-        let view = view(&plan, &wanted)?;
-        let Ok(picture) = plan.render(view, cancel) else { return Err(replaced()) };
+        let settings = screen::shown(uncropped(settings, wanted.uncropped), wanted.gamut);
+        let (plan, view) = planned(&task, &open, settings, &wanted)?;
+        let rendered = match wanted.rect {
+            Some(_) => plan.render(view, cancel),
+            None => plan.render_again(view, &open.kept, cancel),
+        };
+        let Ok(picture) = rendered else { return Err(replaced()) };
         let picture = screen::for_screen(picture, wanted.gamut);
         // One thread counts while another codes.
         let (counted, coded) = std::thread::scope(|scope| {
@@ -141,8 +142,27 @@ pub(crate) fn opened(shared: &Shared, edited: &Edited) -> Result<(Arc<Open>, Set
 }
 
 fn plan(shared: &Shared, open: &Open, settings: &Settings) -> Result<Plan, Fault> {
-    let plan = open.photo.plan(&open.analysis, &shared.store(), settings);
-    plan.map_err(|e| Fault::unusable(format!("{}: {e}", darkroot::shown(&open.path))))
+    open.plan(&shared.store(), settings)
+}
+
+/// What a view is rendered by. A quick one is coarse, unless what is kept of it serves.
+fn planned(shared: &Shared, open: &Open, settings: Settings, wanted: &Wanted) -> Result<(Plan, View), Fault> {
+    let by = |settings: &Settings| {
+        let plan = plan(shared, open, settings)?;
+        let view = view(&plan, wanted)?;
+        Ok::<_, Fault>((plan, view))
+    };
+    if !wanted.quick {
+        return by(&settings);
+    }
+    if open.kept.is_empty() {
+        return by(&screen::at_once(settings));
+    }
+    let (whole, of_whole) = by(&settings)?;
+    if whole.is_kept(of_whole, &open.kept) {
+        return Ok((whole, of_whole));
+    }
+    by(&screen::with_noise(settings))
 }
 
 fn uncropped(mut settings: Settings, yes: bool) -> Settings {
@@ -236,7 +256,7 @@ pub(crate) async fn balance(
         let (open, settings) = opened(&shared, &at.edited)?;
         let mut settings = screen::shown(settings, at.gamut);
         settings.recipe.balance = Balance::Spot { x: at.x, y: at.y, side: GREY };
-        let [red, green, blue] = plan(&shared, &open, &settings)?.multipliers;
+        let [red, green, blue] = plan(&shared, &open, &settings)?.multipliers();
         Ok(Json(format!("{:.4},1,{:.4}", red / green, blue / green)))
     })
     .await

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::aside;
-use super::asked::{Asked, Body, Named};
+use super::asked::{Asked, Body};
 use crate::facts::Facts;
 use crate::fault::Fault;
 use crate::state::Shared;
@@ -72,14 +72,23 @@ pub(crate) async fn facts(
     .await
 }
 
+/// A small picture that is asked for.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Small {
+    file: String,
+    /// Whether a coarse one will do, if it is there sooner.
+    #[serde(default)]
+    quick: bool,
+}
+
 /// The small picture of a file.
 pub(crate) async fn small(
     State(shared): State<Arc<Shared>>,
-    Asked(Named { file }): Asked<Named>,
+    Asked(Small { file, quick }): Asked<Small>,
 ) -> Result<impl IntoResponse, Fault> {
     let picture = aside(move || {
         let place = shared.roots.file(&file)?;
-        shared.smalls.of(&file, &place, &shared.store())
+        shared.smalls.of(&file, &place, &shared.store(), quick)
     })
     .await?;
     Ok(([(CONTENT_TYPE, "image/jpeg"), (CACHE_CONTROL, "private, max-age=3600")], picture.to_vec()))
