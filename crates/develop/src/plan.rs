@@ -243,7 +243,7 @@ fn denoiser(
     }
     let model = analysis.noise_model()?;
     let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
-    analysis.denoiser(Asked { model, multipliers, strength, limits, mends: Arc::clone(mends) })
+    analysis.denoiser(Asked { by: asked.by, model, multipliers, strength, limits, mends: Arc::clone(mends) })
 }
 
 /// Blurs that are undone, pixels: below the first there is nothing to do; beyond the last a picture is not in focus.

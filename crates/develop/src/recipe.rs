@@ -93,9 +93,22 @@ pub enum HotPixels {
     Off,
 }
 
+/// What noise is told by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DenoiseBy {
+    /// By how strong details of each scale are around a place: fast.
+    #[default]
+    Scales,
+    /// By blocks of the picture that are like each other: better, and slow. Where there is nothing to compare, under other
+    /// arrays than Bayer's and in the smallest frames, by scales.
+    Likeness,
+}
+
 /// How much noise is taken away before interpolation: shares of what the noise model expects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Denoise {
+    /// How it is told.
+    pub by: DenoiseBy,
     /// Of all; `None` for what suits the look: all of it, in the linear look none.
     pub amount: Option<f32>,
     /// Of brightness, times `amount`.
@@ -106,7 +119,7 @@ pub struct Denoise {
 
 impl Default for Denoise {
     fn default() -> Self {
-        Self { amount: None, luma: 1.0, chroma: 1.0 }
+        Self { by: DenoiseBy::Scales, amount: None, luma: 1.0, chroma: 1.0 }
     }
 }
 

@@ -1,12 +1,12 @@
 //! Runs the stages over tiles, in parallel, and puts the finished tiles upright into bands of one picture.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use darkroot_photo::{CameraSpace, Mosaic, Picture, PictureSpace, Rect, Rgb, Samples, Size};
 
 use crate::demosaic::reduce::{self, Reduction};
 use crate::demosaic::{self, Method, debias};
-use crate::denoise::{self, Coarse, Denoiser};
+use crate::denoise::{self, Denoiser, OfFrame};
 use crate::finish::Finish;
 use crate::geometry::{self, Warp, brighten, resample};
 use crate::grid::Grid;
@@ -130,8 +130,8 @@ pub struct Render<'a> {
     reduction: Option<Reduction>,
     rect: Rect,
     columns: usize,
-    /// What takes away noise, with that of the coarse scales.
-    denoiser: Option<(&'a Denoiser, Arc<Coarse>)>,
+    /// What takes away noise, with what it knows of the frame.
+    denoiser: Option<(&'a Denoiser, OfFrame)>,
     sharpener: Option<&'a Sharpener>,
     cancel: &'a Cancel,
 }
@@ -158,8 +158,6 @@ impl<'a> Render<'a> {
         let nothing = Rect { width: 0, height: 0, ..view.rect };
         let rect = view.rect.intersection(plan.whole(view.scale).rect).unwrap_or(nothing);
         let layout = plan.capture.counts.layout();
-        let coarse =
-            |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&plan.capture, &plan.light, cancel)?));
         let reduction = (view.scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout));
         let (grid, warp, columns) = match &plan.laid.warp {
             None => (Grid::of(plan, view.scale), None, columns),
@@ -170,7 +168,7 @@ impl<'a> Render<'a> {
             }
         };
         let sharpener = plan.sharpener.as_ref().filter(|_| reduction.is_none());
-        Ok(Self {
+        let mut render = Self {
             plan,
             grid,
             warp,
@@ -179,10 +177,33 @@ impl<'a> Render<'a> {
             reduction,
             rect,
             columns: columns.clamp(1, rect.width.max(1)),
-            denoiser: plan.denoiser.as_ref().map(coarse).transpose()?,
+            denoiser: None,
             sharpener,
             cancel,
-        })
+        };
+        if let Some(filter) = plan.denoiser.as_ref().filter(|_| rect.size().area() > 0) {
+            let (begin, size) = render.mosaic_of(render.source_of(rect));
+            let needed = covered(&plan.capture, begin, size);
+            render.denoiser = Some((filter, filter.of_frame((&plan.capture, &plan.light), needed, cancel)?));
+        }
+        Ok(render)
+    }
+
+    /// The rectangle of the grid that a rectangle of the upright picture is made of.
+    fn source_of(&self, upright: Rect) -> Rect {
+        match &self.warp {
+            Some((warp, grid)) => warp.needs(&warp.places(upright, grid.bin), grid.bin),
+            None => self.grid.of_upright(upright),
+        }
+    }
+
+    /// Where the mosaic begins in the frame that a rectangle of the grid is made of, and its size.
+    fn mosaic_of(&self, rect: Rect) -> ((isize, isize), Size) {
+        let (x, y) = self.grid.corner(rect);
+        let around = self.border + self.wider;
+        let length = |count: usize| count * self.grid.bin + 2 * around;
+        let size = Size { width: length(rect.width), height: length(rect.height) };
+        ((x - around as isize, y - around as isize), size)
     }
 
     fn scratch<T: Sample>(&self) -> Scratch<T> {
@@ -256,14 +277,12 @@ impl<'a> Render<'a> {
         let (plan, border, bin) = (self.plan, self.border, self.grid.bin);
         let Scratch { denoised, mosaic, ends, camera, wide, sharpened, aligned, .. } = scratch;
         let (x, y) = self.grid.corner(rect);
-        let around = border + self.wider;
-        let size = Size { width: rect.width * bin + 2 * around, height: rect.height * bin + 2 * around };
-        let begin = (x - around as isize, y - around as isize);
+        let (begin, size) = self.mosaic_of(rect);
         let (capture, light) = (&*plan.capture, &*plan.light);
         let levelled: &Levelled<'_> = match &self.denoiser {
             None => &|x, y, row| plan.mends.levelled(capture, light, (x, y), row),
-            Some((filter, coarse)) => {
-                filter.denoise((capture, light), coarse, covered(capture, begin, size), denoised);
+            Some((filter, of_frame)) => {
+                filter.denoise((capture, light), of_frame, covered(capture, begin, size), denoised);
                 &|x, y, row| denoised.row(x, y, row)
             }
         };

@@ -10,6 +10,7 @@ use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSUR
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
 };
+use super::noise::{DENOISE, DENOISE_CHROMA, DENOISE_LUMA};
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{
@@ -186,43 +187,9 @@ pub const SETTINGS: [Setting; 56] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.hot_pixels, one_of(&HOT_PIXELS, text)),
     },
-    Setting {
-        name: "denoise",
-        alias: None,
-        noun: "amount of denoising",
-        kind: Kind::Text { form: "auto, off, or a number from 0 to 2", example: "\"off\" or \"0.5\"" },
-        default: AUTO,
-        group: Group::Picture,
-        placeholder: "AMOUNT",
-        help: "Noise taken away before interpolation: auto (all that was measured; none in the linear look and in camera \
-               RGB), off, or so many times that, 0 to 2",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.amount, amount(text, "amount of denoising")),
-    },
-    Setting {
-        name: "denoise-luma",
-        alias: None,
-        noun: "share of denoising",
-        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
-        default: "1",
-        group: Group::Picture,
-        placeholder: "SHARE",
-        help: "Share of it for noise of brightness, 0 to 2",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.luma, number(text).map(|n| n as f32)),
-    },
-    Setting {
-        name: "denoise-chroma",
-        alias: None,
-        noun: "share of denoising",
-        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
-        default: "1",
-        group: Group::Picture,
-        placeholder: "SHARE",
-        help: "Share of it for noise of colour, 0 to 2",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.chroma, number(text).map(|n| n as f32)),
-    },
+    DENOISE,
+    DENOISE_LUMA,
+    DENOISE_CHROMA,
     Setting {
         name: "sharpen",
         alias: None,
