@@ -1,10 +1,12 @@
 //! Which blocks of a plane are like others.
 
+use darkroot_photo::Size;
+
 use super::planes::Plane;
 use super::transform::SIDE;
 
 /// Rows and columns around a block within which others are looked for.
-pub(super) const REACH: usize = 10;
+pub(super) const REACH: usize = 7;
 /// Columns that are compared at once, at most.
 pub(super) const SPAN: usize = 96;
 /// The same, with those of a block.
@@ -14,7 +16,7 @@ const WIDE: usize = SPAN + 2 * SIDE;
 #[derive(Clone)]
 pub(super) struct Alike<const N: usize> {
     differences: [f32; N],
-    pub(super) shifts: [(i16, i16); N],
+    shifts: [(i16, i16); N],
 }
 
 impl<const N: usize> Alike<N> {
@@ -23,6 +25,15 @@ impl<const N: usize> Alike<N> {
         differences[0] = -1.0;
         Self { differences, shifts: [(0, 0); N] }
     };
+
+    /// Where the blocks begin, if the first one begins there.
+    #[inline(always)]
+    pub(super) fn places(&self, x: usize, y: usize) -> [(usize, usize); N] {
+        let place = |(across, down): (i16, i16)| {
+            (x.wrapping_add_signed(across.into()), y.wrapping_add_signed(down.into()))
+        };
+        self.shifts.map(place)
+    }
 
     #[inline(always)]
     fn insert(&mut self, difference: f32, shift: (i16, i16)) {
@@ -49,26 +60,27 @@ impl Compared {
     }
 
     /// Looks for blocks like those that begin at columns `at` (rising, all within [`SPAN`]) of row `y` of the frame. Blocks lie
-    /// within a frame of so many columns and rows, and `plane` has all that are near.
+    /// within the frame, and `plane` has all that are near.
     #[inline(always)]
     pub(super) fn find<const N: usize>(
         &mut self,
         plane: &Plane<'_>,
-        (columns, rows): (usize, usize),
+        frame: Size,
         (at, y): (&[usize], usize),
         alike: &mut [Alike<N>],
     ) {
         alike.fill(Alike::ITSELF);
         let (Some(&first), Some(&last)) = (at.first(), at.last()) else { return };
-        let reach = REACH as isize;
-        for down in -reach..=reach {
-            let Some(other) = y.checked_add_signed(down).filter(|v| v + SIDE <= rows) else { continue };
-            for across in -reach..=reach {
+        for down in outwards() {
+            let Some(other) = y.checked_add_signed(down).filter(|v| v + SIDE <= frame.height) else {
+                continue;
+            };
+            for across in outwards() {
                 if (across, down) == (0, 0) {
                     continue;
                 }
                 let begin = first.max((-across).max(0) as usize);
-                let end = last.min((columns - SIDE).saturating_add_signed(-across));
+                let end = last.min((frame.width - SIDE).saturating_add_signed(-across));
                 if begin > end {
                     continue;
                 }
@@ -110,6 +122,11 @@ impl Compared {
         pairs(columns, 4, sums);
         columns.copy_from_slice(sums);
     }
+}
+
+/// Shifts from none to the farthest: what is most alike is mostly near, and found first.
+fn outwards() -> impl Iterator<Item = isize> {
+    (0..=2 * REACH as isize).map(|i| if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 })
 }
 
 /// Sums of numbers that lie `step` apart; the last `step` are left as they are.

@@ -1,5 +1,5 @@
-//! One step over the frame: blocks are grouped by their likeness, each group is cleaned as a whole, and where the blocks of
-//! many groups overlap, their mean counts.
+//! One step over a part of the frame: blocks are grouped by their likeness, each group is cleaned as a whole, and where the
+//! blocks of many groups overlap, their mean counts.
 
 use darkroot_colour::simd::vectorised;
 use darkroot_photo::{Rect, Size};
@@ -12,128 +12,139 @@ use super::transform::{Cosines, SIDE, Stack};
 use crate::view::{Cancel, Cancelled};
 
 /// Rows and columns from one block to the next for which others are looked for.
-const STEP: usize = 3;
-/// Rows of blocks that one task works on.
-const STRIP: usize = 16 * STEP;
-/// How far from a result samples lie that have a say in it, in blocks of 2 x 2.
-pub(super) const AROUND: usize = 2 * (REACH + SIDE);
+const STEP: usize = 4;
+/// Rows of the frame whose blocks one task works on.
+const STRIP: usize = 32;
+/// How far from a result there are samples that have a say in it: a block that covers it is in the group of one that lies this
+/// far away, and so is another one on the far side of that.
+pub(super) const AROUND: usize = 2 * REACH + 2 * SIDE;
 
-/// What becomes of the numbers of a stack of noise of variance `strength` squared; the stack of a first estimate tells a way
-/// more than itself. Gives the share of the variance that is left.
-pub(super) trait Clean<const N: usize> {
-    /// Whether there is a first estimate.
+const _: () = assert!(STRIP % STEP == 0 && SPAN % STEP == 0);
+// Strips that have another one between them touch different rows.
+const _: () = assert!(STRIP / 2 >= REACH + SIDE);
+
+/// A way to take noise from a stack.
+pub(super) trait TakeNoise<const N: usize> {
+    /// Whether it looks at a first estimate.
     const GUIDED: bool;
-    fn clean(stack: &mut Stack<N>, guide: &Stack<N>, strength: f32) -> f32;
+
+    /// Takes noise of this standard deviation away, and gives the share of its variance that is left. The first estimate is
+    /// used up.
+    fn take(stack: &mut Stack<N>, guide: &mut Stack<N>, strength: f32, cosines: &Cosines) -> f32;
 }
 
-/// Goes over the rectangle `needed` of the frame.
-pub(super) fn over<const N: usize, C: Clean<N>>(
-    noisy: &Planes,
-    guide: &Planes,
-    (frame, needed): (Size, Rect),
-    strengths: [f32; 4],
-    cancel: &Cancel,
-) -> Result<Sums, Cancelled> {
-    let mut sums = Sums::new(around(needed, AROUND, frame));
-    let columns = begins(needed.x, needed.right(), frame.width);
-    let rows = begins(needed.y, needed.bottom(), frame.height);
-    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(sums) };
-    let cosines = Cosines::new();
-    // Strips that have others between them touch different rows.
-    for turn in 0..2 {
-        let strips: Vec<usize> = (first / STRIP..=last / STRIP).filter(|strip| strip % 2 == turn).collect();
-        let ends: Vec<usize> = strips.iter().skip(1).map(|strip| strip * STRIP - STRIP / 2).collect();
-        let parts = sums.parts(&ends);
-        strips.par_iter().zip(parts).try_for_each(|(strip, mut part)| {
-            let rows = rows.iter().filter(|y| *y / STRIP == *strip);
-            if cancel.is_cancelled() {
-                return Err(Cancelled);
-            }
-            vectorised(
-                #[inline(always)]
-                || {
-                    let mut work =
-                        Work::<N> { noisy, guide, frame, strengths, cosines: &cosines, out: &mut part };
-                    work.strip::<C>(&columns, rows.clone());
-                },
-            );
-            Ok(())
-        })?;
+/// What a step looks at.
+#[derive(Clone, Copy)]
+pub(super) struct Step<'a> {
+    pub(super) noisy: &'a Planes,
+    /// The first estimate; for the first step the noisy planes.
+    pub(super) guide: &'a Planes,
+    /// Columns and rows of the planes of the whole frame.
+    pub(super) frame: Size,
+    /// Standard deviation of the noise of each plane.
+    pub(super) strengths: [f32; 4],
+}
+
+impl Step<'_> {
+    /// Goes over a part of the frame. The sums reach beyond it, where they are not whole.
+    ///
+    /// # Errors
+    /// Somebody cancelled it.
+    pub(super) fn over<const N: usize, T: TakeNoise<N>>(
+        &self,
+        part: Rect,
+        cancel: &Cancel,
+    ) -> Result<Sums, Cancelled> {
+        let mut sums = Sums::new(around(part, AROUND, self.frame));
+        let columns = begins(part.x, part.right(), self.frame.width);
+        let rows = begins(part.y, part.bottom(), self.frame.height);
+        let strips: Vec<&[usize]> = rows.chunk_by(|a, b| a / STRIP == b / STRIP).collect();
+        let cosines = Cosines::new();
+        // Every second strip, then the others: so sums are added to in the same order whoever works on them.
+        for turn in 0..2 {
+            let strips: Vec<&[usize]> =
+                strips.iter().copied().filter(|rows| rows[0] / STRIP % 2 == turn).collect();
+            let ends: Vec<usize> =
+                strips.iter().skip(1).map(|rows| rows[0] / STRIP * STRIP - STRIP / 2).collect();
+            strips.par_iter().zip(sums.parts(&ends)).try_for_each(|(rows, mut sums)| {
+                if cancel.is_cancelled() {
+                    return Err(Cancelled);
+                }
+                vectorised(
+                    #[inline(always)]
+                    || self.strip::<N, T>(&columns, rows, &cosines, &mut sums),
+                );
+                Ok(())
+            })?;
+        }
+        Ok(sums)
     }
-    Ok(sums)
-}
 
-/// A rectangle and so much around it, within the frame.
-pub(super) fn around(rect: Rect, border: usize, frame: Size) -> Rect {
-    let (x, y) = (rect.x.saturating_sub(border), rect.y.saturating_sub(border));
-    let (right, bottom) =
-        ((rect.right() + border).min(frame.width), (rect.bottom() + border).min(frame.height));
-    Rect { x, y, width: right - x, height: bottom - y }
-}
-
-/// Where blocks begin that have a say in what lies between `begin` and `end`: every few, and at the frame's end.
-fn begins(begin: usize, end: usize, length: usize) -> Vec<usize> {
-    let last = length - SIDE;
-    let (least, most) = (begin.saturating_sub(REACH + SIDE - 1), (end + REACH).min(last + 1));
-    let all = (0..last).step_by(STEP).chain([last]);
-    all.filter(|at| (least..most).contains(at)).collect()
-}
-
-struct Work<'a, 'b, const N: usize> {
-    noisy: &'a Planes,
-    guide: &'a Planes,
-    frame: Size,
-    strengths: [f32; 4],
-    cosines: &'a Cosines,
-    out: &'a mut Rows<'b>,
-}
-
-impl<const N: usize> Work<'_, '_, N> {
+    /// Blocks that begin at these columns and rows.
     #[inline(always)]
-    fn strip<'r, C: Clean<N>>(&mut self, columns: &[usize], rows: impl Iterator<Item = &'r usize> + Clone) {
+    fn strip<const N: usize, T: TakeNoise<N>>(
+        &self,
+        columns: &[usize],
+        rows: &[usize],
+        cosines: &Cosines,
+        sums: &mut Rows<'_>,
+    ) {
         let mut compared = Compared::new();
-        let mut alike = vec![Alike::<N>::ITSELF; SPAN / STEP + 2];
-        for at in columns.chunk_by(|a, b| a / SPAN == b / SPAN) {
-            for y in rows.clone() {
-                let alike = &mut alike[..at.len()];
-                let frame = (self.frame.width, self.frame.height);
-                compared.find(&self.guide.plane(0), frame, (at, *y), alike);
-                for (x, alike) in at.iter().zip(alike.iter()) {
-                    let place = |(across, down): (i16, i16)| {
-                        (x.wrapping_add_signed(across.into()), y.wrapping_add_signed(down.into()))
-                    };
-                    self.group::<C>(&alike.shifts.map(place));
+        let mut alike = vec![Alike::<N>::ITSELF; columns.len()];
+        for columns in columns.chunk_by(|a, b| a / SPAN == b / SPAN) {
+            for y in rows {
+                let alike = &mut alike[..columns.len()];
+                compared.find(&self.guide.plane(0), self.frame, (columns, *y), alike);
+                for (x, alike) in columns.iter().zip(alike) {
+                    self.group::<N, T>(&alike.places(*x, *y), cosines, sums);
                 }
             }
         }
     }
 
-    /// Cleans one group.
+    /// Cleans the group of blocks that begin at these places.
     #[inline(always)]
-    fn group<C: Clean<N>>(&mut self, places: &[(usize, usize); N]) {
+    fn group<const N: usize, T: TakeNoise<N>>(
+        &self,
+        places: &[(usize, usize); N],
+        cosines: &Cosines,
+        sums: &mut Rows<'_>,
+    ) {
         let mut stack = Stack::<N>::EMPTY;
         let mut guide = Stack::<N>::EMPTY;
-        self.out.count(places);
+        sums.count(places);
         for k in 0..4 {
             fill(&mut stack, self.noisy, k, places);
-            stack.forth(self.cosines);
-            if C::GUIDED {
+            if T::GUIDED {
                 fill(&mut guide, self.guide, k, places);
-                guide.forth(self.cosines);
             }
-            let left = C::clean(&mut stack, &guide, self.strengths[k]);
-            stack.back(self.cosines);
-            self.out.add(k, &stack, places, 1.0 / left);
+            let left = T::take(&mut stack, &mut guide, self.strengths[k], cosines);
+            sums.add(k, &stack, places, 1.0 / left);
         }
     }
+}
+
+/// A part of the frame and so much around it, within the frame.
+pub(super) fn around(part: Rect, border: usize, frame: Size) -> Rect {
+    let (x, y) = (part.x.saturating_sub(border), part.y.saturating_sub(border));
+    let right = (part.right() + border).min(frame.width);
+    let bottom = (part.bottom() + border).min(frame.height);
+    Rect { x, y, width: right - x, height: bottom - y }
+}
+
+/// Where blocks begin whose groups have a say in what lies between `begin` and `end`: every few, and at the frame's end.
+fn begins(begin: usize, end: usize, length: usize) -> Vec<usize> {
+    let last = length - SIDE;
+    let near = begin.saturating_sub(REACH + SIDE - 1)..end + REACH;
+    (0..last).step_by(STEP).chain([last]).filter(|at| near.contains(at)).collect()
 }
 
 #[inline(always)]
 fn fill<const N: usize>(stack: &mut Stack<N>, planes: &Planes, k: usize, places: &[(usize, usize); N]) {
     let plane = planes.plane(k);
-    for (r, row) in stack.0.iter_mut().enumerate() {
-        for (block, (x, y)) in row.iter_mut().zip(places) {
-            *block = plane.row_of_block(*x, y + r);
+    for (block, (x, y)) in stack.0.iter_mut().zip(places) {
+        for (r, row) in block.iter_mut().enumerate() {
+            row.copy_from_slice(plane.row(*x, y + r, SIDE));
         }
     }
 }

@@ -1,12 +1,7 @@
 //! The rotated planes of a part of the frame.
 
-use darkroot_colour::simd::vectorised;
 use darkroot_photo::Rect;
 use rayon::prelude::*;
-
-use super::transform::SIDE;
-use crate::denoise::Denoiser;
-use crate::denoise::rows::{Places, Source};
 
 /// The four rotated planes of a rectangle of the frame, in blocks of 2 x 2 from the active area's corner on.
 pub(super) struct Planes {
@@ -24,28 +19,6 @@ pub(super) struct Plane<'a> {
 impl Planes {
     pub(super) fn empty(rect: Rect) -> Self {
         Self { rect, planes: [0; 4].map(|_| vec![0f32; rect.width * rect.height]) }
-    }
-
-    /// Of the mosaic.
-    pub(super) fn of(filter: &Denoiser, source: Source<'_>, rect: Rect) -> Self {
-        let mut all = Self::empty(rect);
-        all.by_rows(|y, planes| {
-            let mut mosaic = [0; 2].map(|_| vec![0f32; 2 * rect.width]);
-            for (i, row) in mosaic.iter_mut().enumerate() {
-                source.row(2 * rect.x as isize, (2 * y + i) as isize, row);
-            }
-            let mut places = Places::new(rect.width);
-            let mut planes = Some(planes);
-            vectorised(
-                #[inline(always)]
-                || {
-                    if let Some(planes) = planes.take() {
-                        places.rotated(filter, (&mosaic[0], &mosaic[1]), planes);
-                    }
-                },
-            );
-        });
-        all
     }
 
     /// Does something to each row of all planes, in parallel: `work` gets its number in the frame.
@@ -66,13 +39,5 @@ impl Plane<'_> {
     #[inline(always)]
     pub(super) fn row(&self, x: usize, y: usize, count: usize) -> &[f32] {
         &self.samples[(y - self.rect.y) * self.rect.width + x - self.rect.x..][..count]
-    }
-
-    /// A row of the block that begins there.
-    #[inline(always)]
-    pub(super) fn row_of_block(&self, x: usize, y: usize) -> [f32; SIDE] {
-        let mut row = [0.0; SIDE];
-        row.copy_from_slice(self.row(x, y, SIDE));
-        row
     }
 }

@@ -74,15 +74,15 @@ impl Rows<'_> {
         places: &[(usize, usize); N],
         weight: f32,
     ) {
-        for (r, row) in stack.0.iter().enumerate() {
-            for ((x, y), block) in places.iter().zip(row) {
+        for (block, (x, y)) in stack.0.iter().zip(places) {
+            for (r, row) in block.iter().enumerate() {
                 let sums = self.kept(k, *x, y + r);
-                for (sum, v) in sums.iter_mut().zip(block) {
-                    *sum += weight * v;
+                for i in 0..SIDE {
+                    sums[i] += weight * row[i];
                 }
                 let weights = self.kept(4 + k, *x, y + r);
-                for sum in weights {
-                    *sum += weight;
+                for i in 0..SIDE {
+                    weights[i] += weight;
                 }
             }
         }
