@@ -14,7 +14,9 @@ pub struct Recipe {
     /// What becomes of clipped highlights.
     pub highlights: Highlights,
     /// What becomes of hot and dead pixels.
-    pub hot_pixels: HotPixels,
+    pub hot_pixels: Mending,
+    /// What becomes of rows that lie too high or too low.
+    pub banding: Mending,
     /// How much noise is taken away.
     pub denoise: Denoise,
     /// How missing colours are interpolated.
@@ -83,10 +85,10 @@ pub enum Highlights {
     Keep,
 }
 
-/// What becomes of pixels that are hot or dead.
+/// What becomes of faults of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum HotPixels {
-    /// They take the light of those around them; in the linear look and in camera RGB they stay.
+pub enum Mending {
+    /// They are put right where they are certain; in the linear look and in camera RGB they stay.
     #[default]
     Auto,
     /// They stay.

@@ -106,7 +106,7 @@ fn a_hot_pixel_goes_but_not_from_a_measurement() {
     let red = |picture: &Picture| pixels(picture)[120 * SIZE.width + 150].into_iter().fold(0.0, f64::max);
     let mended = develop(&noisy, None, &asked(None));
     assert!((red(&mended) - red(&clean)).abs() < 0.05, "{} {}", red(&mended), red(&clean));
-    let kept = Recipe { hot_pixels: darkroot_develop::HotPixels::Off, ..asked(None) };
+    let kept = Recipe { hot_pixels: darkroot_develop::Mending::Off, ..asked(None) };
     assert!(red(&develop(&noisy, None, &kept)) > red(&clean) + 0.2);
     let linear = Recipe { look: Look::Linear, ..measuring() };
     assert!(red(&develop(&noisy, None, &linear)) > 0.3);

@@ -1,11 +1,37 @@
-//! Settings of noise.
+//! Settings of noise and of faults of the sensor.
 
 use darkroot_develop::{Denoise, DenoiseBy};
 
 use super::setting::{Changes, Group, Kind, Setting};
 use super::table::put;
-use super::text::{NotAValue, amount, number};
-use super::words::AUTO;
+use super::text::{NotAValue, amount, number, one_of};
+use super::words::{self, AUTO, plain};
+
+pub(super) const HOT_PIXELS: Setting = Setting {
+    name: "hot-pixels",
+    alias: None,
+    noun: "way with hot pixels",
+    kind: Kind::Words(const { &plain(&words::HOT_PIXELS) }),
+    default: AUTO,
+    group: Group::Picture,
+    placeholder: "",
+    help: "What becomes of hot and dead pixels (the linear look and camera RGB keep them)",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.recipe.hot_pixels, one_of(&words::HOT_PIXELS, text)),
+};
+
+pub(super) const BANDING: Setting = Setting {
+    name: "banding",
+    alias: None,
+    noun: "way with banding",
+    kind: Kind::Words(const { &plain(&words::BANDING) }),
+    default: AUTO,
+    group: Group::Picture,
+    placeholder: "",
+    help: "What becomes of rows that the sensor left too high or too low (the linear look and camera RGB keep them)",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.recipe.banding, one_of(&words::BANDING, text)),
+};
 
 pub(super) const DENOISE: Setting = Setting {
     name: "denoise",

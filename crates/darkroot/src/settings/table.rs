@@ -10,7 +10,7 @@ use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSUR
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
 };
-use super::noise::{DENOISE, DENOISE_CHROMA, DENOISE_LUMA};
+use super::noise::{BANDING, DENOISE, DENOISE_CHROMA, DENOISE_LUMA, HOT_PIXELS};
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{
@@ -18,7 +18,7 @@ use super::tones::{
     WHITE,
 };
 use super::words::{
-    AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
+    AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, LOOKS, SWITCH, plain,
 };
 
 /// Writes what a text means into its place.
@@ -28,7 +28,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 56] = [
+pub const SETTINGS: [Setting; 57] = [
     Setting {
         name: "format",
         alias: None,
@@ -175,18 +175,8 @@ pub const SETTINGS: [Setting; 56] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.highlights, one_of(&HIGHLIGHTS, text)),
     },
-    Setting {
-        name: "hot-pixels",
-        alias: None,
-        noun: "way with hot pixels",
-        kind: Kind::Words(const { &plain(&HOT_PIXELS) }),
-        default: AUTO,
-        group: Group::Picture,
-        placeholder: "",
-        help: "What becomes of hot and dead pixels (the linear look and camera RGB keep them)",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.hot_pixels, one_of(&HOT_PIXELS, text)),
-    },
+    HOT_PIXELS,
+    BANDING,
     DENOISE,
     DENOISE_LUMA,
     DENOISE_CHROMA,

@@ -184,7 +184,10 @@ impl Denoiser {
     /// Share of the variance that is left where there is nothing but noise.
     pub(crate) fn left(&self) -> f32 {
         let Strength { luma, chroma } = self.asked.strength;
-        let kept = |s: f32| (1.0 - shrink::removed(shrink::threshold(1.0, s), 1.0)).powi(2);
+        let kept = |s: f32| match self.asked.by {
+            DenoiseBy::Scales => (1.0 - shrink::removed(shrink::threshold(1.0, s), 1.0)).powi(2),
+            DenoiseBy::Likeness => likeness::left_of_noise(s),
+        };
         if self.any.is_some() {
             return 1.0;
         }

@@ -122,6 +122,16 @@ fn a_rectangle_is_that_rectangle_of_the_whole() {
 }
 
 #[test]
+fn a_frame_of_several_slabs_has_no_seams() {
+    // One slab is 1024 rows.
+    let capture = capture("BGGR", Size { width: 72, height: 1250 }, 19, scene);
+    let all = denoised(&filter(&capture, DenoiseBy::Likeness, 1.0), &capture, capture.active_area);
+    let rect = Rect { x: 0, y: 950, width: 72, height: 200 };
+    let part = denoised(&filter(&capture, DenoiseBy::Likeness, 1.0), &capture, rect);
+    assert_eq!(part, all[950 * 72..1150 * 72]);
+}
+
+#[test]
 fn threads_have_no_say() {
     let capture = capture("RGGB", Size { width: 300, height: 420 }, 2, scene);
     let with = |threads: usize| {
@@ -200,6 +210,18 @@ fn flat_patches_keep_their_mean_and_lose_their_noise() {
             let variance = mean(&clean.iter().map(|v| (v - after as f32).powi(2)).collect::<Vec<_>>());
             assert!(variance < share * f64::from(LINE.at(light)), "{by:?} {light}: {variance:e}");
         }
+    }
+}
+
+#[test]
+fn what_is_left_of_noise_is_known() {
+    let capture = capture("RGGB", Size { width: 256, height: 256 }, 41, |_, _| 0.3);
+    for strength in [0.25, 0.5, 0.75, 1.0] {
+        let filter = filter(&capture, DenoiseBy::Likeness, strength);
+        let clean = denoised(&filter, &capture, capture.active_area);
+        let power = clean.iter().map(|v| (v - 0.3).powi(2)).sum::<f32>() / clean.len() as f32;
+        let left = power / LINE.at(0.3);
+        assert!((left - filter.left()).abs() < 0.05, "{strength}: {left} {}", filter.left());
     }
 }
 

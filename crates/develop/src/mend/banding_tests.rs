@@ -1,0 +1,125 @@
+//! Banding that was added is found and taken away; what a scene shows is none.
+
+use darkroot_photo::{Capture, Size};
+
+use super::Mends;
+use super::tests::{ELECTRON, capture, mends};
+use crate::denoise::Random;
+use crate::light::LinearLight;
+
+const SIZE: Size = super::tests::SIZE;
+
+/// Light at a column and row, with offsets of rows of this standard deviation, all in electrons; and the offsets.
+fn banded(light: impl Fn(usize, usize) -> f32, strength: f32, seed: u64) -> (Capture, Vec<f32>) {
+    let mut random = Random::new(seed + 100);
+    let offsets: Vec<f32> = (0..SIZE.height).map(|_| strength * random.normal()).collect();
+    let electrons = |i: usize| light(i % SIZE.width, i / SIZE.width) + offsets[i / SIZE.width];
+    (capture(&(0..SIZE.area()).map(electrons).collect::<Vec<_>>(), seed), offsets)
+}
+
+/// Dark and brighter from left to right and back, so that windows of both lie everywhere.
+fn shaded(x: usize, _: usize) -> f32 {
+    90.0 + 70.0 * (x as f32 / 30.0).sin()
+}
+
+/// Shaded light times what `rows` has for each row.
+fn striped(rows: impl Fn(usize) -> f32) -> impl Fn(usize, usize) -> f32 {
+    move |x, y| shaded(x, y) * rows(y)
+}
+
+/// Means of rows of mended light, in electrons.
+fn row_means(capture: &Capture, mends: &Mends) -> Vec<f32> {
+    let light = LinearLight::of(capture);
+    let mut row = vec![0.0; SIZE.width];
+    let mut mean = |y: usize| {
+        mends.levelled(capture, &light, (0, y), &mut row);
+        row.iter().sum::<f32>() / SIZE.width as f32 / ELECTRON
+    };
+    (0..SIZE.height).map(&mut mean).collect()
+}
+
+/// Power of the differences of successive rows.
+fn unrest(means: &[f32]) -> f32 {
+    means.windows(2).map(|v| (v[1] - v[0]).powi(2)).sum::<f32>() / means.len() as f32
+}
+
+#[test]
+fn banding_is_measured_and_taken_away() {
+    for (i, strength) in [0.8f32, 2.0, 6.0].into_iter().enumerate() {
+        let (banded, offsets) = banded(shaded, strength, i as u64);
+        let mends = mends(&banded);
+        let found = mends.banding().unwrap() * noise();
+        assert!((found / strength - 1.0).abs() < 0.25, "{strength}: {found}");
+        let means = row_means(&banded, &mends);
+        let (before, after) = (unrest(&offsets), unrest(&means));
+        // Of 600 samples the mean scatters too.
+        assert!(after < 0.2 * before + 3.0 * noise().powi(2) / 600.0, "{strength}: {before} {after}");
+        // All of it stays as bright as it was.
+        let all = |mends: &Mends| row_means(&banded, mends).iter().sum::<f32>() / SIZE.height as f32;
+        let (kept, mended) = (all(&Mends::default()), all(&mends));
+        assert!((kept - mended).abs() < 0.02, "{strength}: {kept} {mended}");
+    }
+}
+
+/// Standard deviation of a sample of the middle light, in electrons.
+fn noise() -> f32 {
+    (90.0f32 + 9.0).sqrt()
+}
+
+#[test]
+fn nearly_no_light_shows_it_too() {
+    let (banded, _) = banded(|_, _| 2.0, 1.5, 8);
+    assert!(mends(&banded).banding().is_some());
+}
+
+#[test]
+fn without_banding_nothing_is_changed() {
+    for seed in 0..12 {
+        let (clean, _) = banded(shaded, 0.0, seed);
+        assert_eq!(mends(&clean).banding(), None, "{seed}");
+        let (dark, _) = banded(|_, _| 3.0, 0.0, seed);
+        assert_eq!(mends(&dark).banding(), None, "{seed}");
+    }
+}
+
+#[test]
+fn stripes_and_textures_of_a_scene_are_no_banding() {
+    let mut random = Random::new(5);
+    let rough: Vec<f32> = (0..SIZE.height + 2).map(|_| random.normal()).collect();
+    let none = |name: &str, rows: &dyn Fn(usize) -> f32| {
+        for seed in [1, 2] {
+            let (scene, _) = banded(striped(rows), 0.0, seed);
+            assert_eq!(mends(&scene).banding(), None, "{name} {seed}");
+        }
+    };
+    for period in [2.0f32, 3.0, 4.0, 5.0, 7.5, 12.0, 30.0, 90.0] {
+        for depth in [0.02, 0.1, 0.5] {
+            none("waves", &|y| 1.0 + depth * (std::f32::consts::TAU * y as f32 / period).sin());
+        }
+    }
+    for depth in [0.02, 0.05, 0.2] {
+        // Even without any lens.
+        none("random rows", &|y| 1.0 + depth * rough[y]);
+        none("seen by a lens", &|y| 1.0 + depth * (0.25 * (rough[y] + rough[y + 2]) + 0.5 * rough[y + 1]));
+    }
+    none("bright stripes", &|y| if y % 40 < 3 { 4.0 } else { 1.0 });
+    none("a horizon", &|y| if y < 217 { 1.0 } else { 0.3 });
+    none("lines", &|y| if y.is_multiple_of(57) { 2.0 } else { 1.0 });
+}
+
+#[test]
+fn stripes_in_one_part_of_a_scene_are_no_banding() {
+    let mut random = Random::new(6);
+    let rough: Vec<f32> = (0..SIZE.height).map(|_| random.normal()).collect();
+    let places: [(&str, fn(usize, usize) -> bool); 4] = [
+        ("left", |x, _| x < 300),
+        ("right", |x, _| x > 350),
+        ("where it is dark", |x, y| shaded(x, y) < 80.0),
+        ("where it is bright", |x, y| shaded(x, y) > 100.0),
+    ];
+    for (name, is_there) in places {
+        let (scene, _) =
+            banded(|x, y| shaded(x, y) + if is_there(x, y) { 4.0 * rough[y] } else { 0.0 }, 0.0, 3);
+        assert_eq!(mends(&scene).banding(), None, "{name}");
+    }
+}
