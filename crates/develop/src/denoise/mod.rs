@@ -51,7 +51,8 @@ use rows::Source;
 use shrink::UnitNoise;
 use stabilise::Stabiliser;
 
-/// What it asks of a tile: pixels around it, of which it gives none.
+/// What it asks of a tile: pixels around it, of which it gives none. What reaches farther is found before tiles begin
+/// ([`OfFrame`]).
 pub const STAGE: Stage = Stage { name: "noise", border: bayer::BORDER, when_smaller: WhenSmaller::Same };
 
 /// How much noise is taken away.
