@@ -148,7 +148,9 @@ fn banding_goes_but_not_from_a_measurement_and_not_from_a_clean_picture() {
     let Counts::U16(mosaic) = &mut banded.counts else { panic!("counts") };
     for (y, row) in mosaic.samples.chunks_exact_mut(SIZE.width).enumerate() {
         // Of the same size as the noise, and without order.
-        let offset = (y * 7919 % 23) as u16;
+        let mixed = (y as u32 + 1).wrapping_mul(0x9E37_79B1);
+        let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85EB_CA6B);
+        let offset = ((mixed >> 16) % 24) as u16;
         row.iter_mut().for_each(|v| *v += offset);
     }
     let kept = |recipe: Recipe| Recipe { banding: Mending::Off, ..recipe };

@@ -1,7 +1,8 @@
 //! Banding: rows whose samples all lie a little too high or too low, as an amplifier left them.
 //!
-//! In flat windows the mean of a row is compared with a line through those of its colour above and below. What is so found is
-//! called banding only if nothing else could be it:
+//! Masked columns beside the picture show it best (`masked.rs`): no light falls there. Without them, in flat windows the mean of a
+//! row is compared with a line through those of its colour above and below. What is so found is called banding only if nothing
+//! else could be it:
 //!
 //! - windows beside each other say the same, far more than their noise allows, and so do the left and the right half;
 //! - it is as strong where there is much light as where there is little: stripes of a scene grow with its light;
@@ -12,14 +13,15 @@
 use darkroot_photo::{Capture, Cfa};
 use rayon::prelude::*;
 
+use super::masked;
 use crate::denoise::NoiseModel;
 use crate::light::LinearLight;
 
 /// Rows and columns of a window.
-const ROWS: usize = 32;
+pub(super) const ROWS: usize = 32;
 const COLUMNS: usize = 64;
 /// Samples of one colour in a column of a window, and in a row of it.
-const TALL: usize = ROWS / 2;
+pub(super) const TALL: usize = ROWS / 2;
 const WIDE: usize = COLUMNS / 2;
 /// Most windows beside each other that are looked at.
 const MOST_WINDOWS: usize = 24;
@@ -30,7 +32,7 @@ const BRIGHTEST: f32 = 0.25;
 /// Share of the rows of a picture that must have an offset.
 const COVERED: f64 = 0.5;
 /// How many standard errors the agreement of windows must be from none.
-const CERTAIN: f64 = 8.0;
+pub(super) const CERTAIN: f64 = 8.0;
 /// Standard deviation of offsets that is seen, against that of the noise of dark samples.
 const VISIBLE: f64 = 0.04;
 /// How much brighter the brighter half of the windows must be than the darker one to tell offsets from stripes of a scene.
@@ -48,7 +50,7 @@ const LAGS: usize = 6;
 /// Offsets of rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Banding {
-    /// What to take from the light of each row of the active area.
+    /// What to take from the light of each row of the active area; the last few may be missing.
     pub(super) offsets: Vec<f32>,
     /// Their standard deviation, as a share of that of the noise of dark samples.
     pub(super) strength: f32,
@@ -110,17 +112,18 @@ pub(super) fn found(
         let of = &mut lights[usize::from(is_bright)];
         *of = (of.0 + weight * f64::from(window.light), of.1 + weight);
     }
-    let strength = certain(&rows, lights.map(|(sum, weight)| sum / weight))?;
-    let dark = model.channels.iter().map(|line| f64::from(line.at(middle))).sum::<f64>() / 3.0;
-    if strength < VISIBLE * VISIBLE * dark {
-        return None;
-    }
-    let offset = |row: &Row| {
-        let (offset, variance) = mean(row, |_| true)?;
-        Some(offset * strength / (strength + variance))
+    let shown: Vec<Option<(f64, f64)>> = rows.iter().map(|row| mean(row, |_| true)).collect();
+    let (offsets, strength) = match masked::offsets(capture, light, &shown) {
+        Some(found) => found,
+        None => {
+            let strength = certain(&rows, lights.map(|(sum, weight)| sum / weight))?;
+            let offset = |(offset, variance): (f64, f64)| offset * strength / (strength + variance);
+            (shown.into_iter().map(|shown| shown.map_or(0.0, offset) as f32).collect(), strength)
+        }
     };
-    let offsets = (0..area.height).map(|y| rows.get(y).and_then(offset).unwrap_or(0.0) as f32).collect();
-    Some(Banding { offsets, strength: (strength / dark).sqrt() as f32 })
+    let dark = model.channels.iter().map(|line| f64::from(line.at(middle))).sum::<f64>() / 3.0;
+    let strength = (strength / dark).sqrt();
+    (strength >= VISIBLE).then_some(Banding { offsets, strength: strength as f32 })
 }
 
 /// The flat windows of a band of rows.
@@ -167,7 +170,7 @@ fn of_band(
 }
 
 /// Numbers less the line through them.
-fn less_line(numbers: [f32; TALL]) -> [f32; TALL] {
+pub(super) fn less_line(numbers: [f32; TALL]) -> [f32; TALL] {
     let middle = (TALL - 1) as f32 / 2.0;
     let from_middle: [f32; TALL] = std::array::from_fn(|i| i as f32 - middle);
     let mean = numbers.iter().sum::<f32>() / TALL as f32;

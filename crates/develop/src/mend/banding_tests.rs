@@ -1,9 +1,9 @@
 //! Banding that was added is found and taken away; what a scene shows is none.
 
-use darkroot_photo::{Capture, Size};
+use darkroot_photo::{Capture, Counts, Mosaic, Rect, Size};
 
 use super::Mends;
-use super::tests::{ELECTRON, capture, mends};
+use super::tests::{BLACK, ELECTRON, capture, mends};
 use crate::denoise::Random;
 use crate::light::LinearLight;
 
@@ -64,6 +64,58 @@ fn banding_is_measured_and_taken_away() {
 /// Standard deviation of a sample of the middle light, in electrons.
 fn noise() -> f32 {
     (90.0f32 + 9.0).sqrt()
+}
+
+/// With columns beside the picture that no light reaches; in them the rows have these offsets, in electrons, and noise.
+fn with_masked(capture: &Capture, offsets: &[f32]) -> Capture {
+    const MASKED: usize = 64;
+    let mut random = Random::new(55);
+    let Counts::U16(mosaic) = &capture.counts else { panic!() };
+    let rows = mosaic.samples.chunks_exact(SIZE.width).zip(offsets);
+    let mut samples = Vec::new();
+    for (row, offset) in rows {
+        samples.extend((0..MASKED).map(|_| (BLACK + 0.25 * (offset + 3.0 * random.normal())).round() as u16));
+        samples.extend(row);
+    }
+    let size = Size { width: SIZE.width + MASKED, ..SIZE };
+    let counts = Counts::U16(Mosaic { size, samples, layout: mosaic.layout.clone() });
+    Capture { counts, active_area: Rect { x: MASKED, ..Rect::full(SIZE) }, ..capture.clone() }
+}
+
+#[test]
+fn masked_columns_tell_banding_from_a_scene() {
+    // A scene in which nothing else could: stripes across all of it.
+    let scene = striped(|y| 1.0 + 0.05 * (0.4 * y as f32).sin());
+    let (banded, offsets) = banded(&scene, 3.0, 4);
+    assert_eq!(mends(&banded).banding(), None);
+    let masked = with_masked(&banded, &offsets);
+    let mends = mends(&masked);
+    let found = mends.banding().unwrap() * noise();
+    assert!((found / 3.0 - 1.0).abs() < 0.25, "{found}");
+    let mut row = vec![0.0; SIZE.width];
+    let mut unrest = [0.0, 0.0];
+    for (unrest, mends) in unrest.iter_mut().zip([&Mends::default(), &mends]) {
+        let light = LinearLight::of(&masked);
+        let mut mean = |y: usize| {
+            mends.levelled(&masked, &light, (64, y), &mut row);
+            let truth: f32 = (0..SIZE.width).map(|x| scene(x, y)).sum();
+            (row.iter().sum::<f32>() / ELECTRON - truth) / SIZE.width as f32
+        };
+        let means: Vec<f32> = (0..SIZE.height).map(&mut mean).collect();
+        *unrest = self::unrest(&means);
+    }
+    assert!(unrest[1] < 0.25 * unrest[0], "{unrest:?}");
+}
+
+#[test]
+fn masked_columns_alone_change_nothing() {
+    let (clean, _) = banded(shaded, 0.0, 3);
+    let mut random = Random::new(9);
+    let quiet = vec![0.0; SIZE.height];
+    let own: Vec<f32> = (0..SIZE.height).map(|_| 4.0 * random.normal()).collect();
+    for (name, offsets) in [("quiet", quiet), ("not shared by the picture", own)] {
+        assert_eq!(mends(&with_masked(&clean, &offsets)).banding(), None, "{name}");
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod banding;
 mod greens;
 mod hot_pixels;
+mod masked;
 
 use darkroot_photo::{Capture, Cfa, Layout};
 

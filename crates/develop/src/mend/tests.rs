@@ -10,7 +10,7 @@ pub(super) const SIZE: Size = Size { width: 600, height: 400 };
 /// 3 electrons of read noise, 0.25 counts an electron.
 pub(super) const ELECTRON: f32 = 0.25 / 16000.0;
 const LINE: Line = Line { slope: ELECTRON, floor: 9.0 * ELECTRON * ELECTRON };
-const BLACK: f32 = 200.0;
+pub(super) const BLACK: f32 = 200.0;
 const EVERYTHING: Wanted = Wanted { hot_pixels: true, banding: true };
 
 /// Electrons as counts of a 14-bit sensor.
