@@ -29,6 +29,8 @@ const MOST_WINDOWS: usize = 24;
 const FLAT: (f32, f32) = (0.6, 1.3);
 /// Brighter windows have too much noise of their own.
 const BRIGHTEST: f32 = 0.25;
+/// One window in so many is dark: its noise is what offsets are seen against.
+const DARK: usize = 20;
 /// Share of the rows of a picture that must have an offset.
 const COVERED: f64 = 0.5;
 /// How many standard errors the agreement of windows must be from none.
@@ -93,10 +95,8 @@ pub(super) fn found(
     let windows: Vec<Window> =
         (0..bands).into_par_iter().flat_map_iter(|band| of_band(capture, light, model, cfa, band)).collect();
     let mut lights: Vec<f32> = windows.iter().map(|w| w.light).collect();
-    let middle = lights.len() / 2;
-    let (_, middle, _) =
-        (!lights.is_empty()).then(|| lights.select_nth_unstable_by(middle, f32::total_cmp))?;
-    let middle = *middle;
+    lights.sort_unstable_by(f32::total_cmp);
+    let (dark, middle) = (*lights.get(lights.len() / DARK)?, *lights.get(lights.len() / 2)?);
     let mut rows: Vec<Row> = vec![[(0.0, 0.0); KINDS]; bands * ROWS];
     let mut lights = [(0.0, 0.0); 2];
     for window in &windows {
@@ -121,8 +121,8 @@ pub(super) fn found(
             (shown.into_iter().map(|shown| shown.map_or(0.0, offset) as f32).collect(), strength)
         }
     };
-    let dark = model.channels.iter().map(|line| f64::from(line.at(middle))).sum::<f64>() / 3.0;
-    let strength = (strength / dark).sqrt();
+    let noise = model.channels.iter().map(|line| f64::from(line.at(dark))).sum::<f64>() / 3.0;
+    let strength = (strength / noise.max(f64::MIN_POSITIVE)).sqrt();
     (strength >= VISIBLE).then_some(Banding { offsets, strength: strength as f32 })
 }
 

@@ -61,9 +61,9 @@ fn banding_is_measured_and_taken_away() {
     }
 }
 
-/// Standard deviation of a sample of the middle light, in electrons.
+/// Standard deviation of a sample in the darkest windows, in electrons.
 fn noise() -> f32 {
-    (90.0f32 + 9.0).sqrt()
+    (36.0f32 + 9.0).sqrt()
 }
 
 /// With columns beside the picture that no light reaches; in them the rows have these offsets, in electrons, and noise.
