@@ -43,6 +43,7 @@ class Settings(TypedDict, total=False):
     flat: str | os.PathLike[str] | None
     highlights: Literal["rebuild", "clip", "keep"] | None
     hot_pixels: Literal["auto", "off"] | None
+    banding: Literal["auto", "off"] | None
     denoise: str | float | Sequence[float] | None
     denoise_luma: float | None
     denoise_chroma: float | None

@@ -5,7 +5,7 @@
 
 Each capture is written as a DNG twice, with noise and without, and developed by the program in the linear look with the
 file's matrix. Printed is the peak signal-to-noise ratio of one against the other in sRGB coding, dE2000 and SSIM, without
-denoising and with it. Exposure is undone, so that dark captures count as they are shown.
+denoising and with each way of it. Exposure is undone, so that dark captures count as they are shown.
 
 The smooth scene has gradients, soft blobs and a few edges. Textures are pictures of the Kodak and McMaster sets as a sensor
 of 20000, 5000 and 1250 electrons at white would see them. Numbers of the filter were tuned on the set "tune"; on "seen" the
@@ -171,7 +171,7 @@ def main():
     parser.add_argument("--pictures", type=Path, required=True)
     parser.add_argument("--work", type=Path, help="keeps the files; without it they are deleted")
     parser.add_argument("--set", choices=SETS, default="judge")
-    parser.add_argument("--with", dest="options", nargs="*", default=["auto"], help="values of --denoise to compare")
+    parser.add_argument("--with", dest="options", nargs="*", default=["auto", "best"], help="values of --denoise to compare")
     parser.add_argument("--each", action="store_true", help="a line for each picture")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:

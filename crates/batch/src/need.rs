@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use darkroot_encode::Format;
 
 use darkroot::settings::{Engine, Settings};
-use darkroot_develop::Bits;
+use darkroot_develop::{Bits, DenoiseBy};
 
 /// What a worker holds besides pictures: program, profiles, stacks, the tiles of one thread.
 pub(crate) const WORKER: u64 = 40 << 20;
@@ -48,7 +48,8 @@ pub(crate) fn develop(
     let beside = frames(&settings.dark).max(frames(&settings.flat));
     let decode = file + 2 * counts + beside;
     // Noise of the coarse scales, and what it is looked for in.
-    let noise = 2 * pixels;
+    let noise =
+        2 * pixels + if settings.recipe.denoise.by == DenoiseBy::Likeness { likeness(pixels) } else { 0 };
     if settings.encode.progressive && format == Format::Jpeg {
         // The whole picture, its coefficients, and the file.
         return WORKER + THREAD + decode.max(counts + noise + 4 * picture);
@@ -63,6 +64,12 @@ pub(crate) fn develop(
     let render = counts + noise + picture.max(absolute);
     let encode = absolute + picture + encoder(format, bits, picture, pixels);
     WORKER + THREAD + decode.max(render).max(encode)
+}
+
+/// What taking noise away by likeness holds: light of the whole frame, and for 1150 rows of it what is looked at.
+fn likeness(pixels: u64) -> u64 {
+    let width = (pixels * 3 / 2).isqrt();
+    4 * pixels + 17 * pixels.min(1150 * width)
 }
 
 /// What an encoder holds beside the picture.

@@ -19,7 +19,11 @@ const INSTEAD: [(&[&str], &str, &str); 11] = [
     (&["angle", "horizon"], "straighten", "`--straighten` takes degrees, or auto"),
     (&["aspect", "ratio"], "crop", "`--crop` takes 3:2, 80% or X,Y,WIDTH,HEIGHT"),
     (&["sharpness", "sharpening"], "sharpen", "`--sharpen` takes auto, off, or a number from 0 to 2"),
-    (&["noise", "noise-reduction", "nr"], "denoise", "`--denoise` takes auto, off, or a number from 0 to 2"),
+    (
+        &["noise", "noise-reduction", "nr"],
+        "denoise",
+        "`--denoise` takes auto, off, best, or a number from 0 to 2",
+    ),
     (&["out", "outdir", "out-dir", "output-dir", "dest"], "output", "`-o` says where pictures go"),
     (&["input", "in", "file"], "output", "files are named without an option"),
     (&["force", "replace", "yes"], "overwrite", "`--overwrite` replaces what is there"),

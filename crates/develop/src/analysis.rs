@@ -9,7 +9,7 @@ use crate::clipped_colours::ClippedColours;
 use crate::denoise::{self, Asked, Denoiser, Measured, NoiseModel};
 use crate::lateral::{self, Lateral};
 use crate::light::LinearLight;
-use crate::mend::Mends;
+use crate::mend::{Mends, Wanted};
 use crate::noise::{self, Window};
 use crate::sharpen::blur;
 use crate::survey::{self, Survey};
@@ -25,8 +25,8 @@ pub struct Analysis {
     survey: OnceLock<Survey>,
     noise: OnceLock<Vec<Window>>,
     samples_noise: OnceLock<Option<Measured>>,
-    /// Without hot and dead pixels, and with them.
-    mends: [OnceLock<Arc<Mends>>; 2],
+    /// Without hot and dead pixels, and with them; each without banding, and with it.
+    mends: [[OnceLock<Arc<Mends>>; 2]; 2],
     denoiser: Mutex<Option<Arc<Denoiser>>>,
     blur: OnceLock<Option<f32>>,
     lateral: OnceLock<Option<Lateral>>,
@@ -45,7 +45,7 @@ impl Analysis {
             survey: OnceLock::new(),
             noise: OnceLock::new(),
             samples_noise: OnceLock::new(),
-            mends: [OnceLock::new(), OnceLock::new()],
+            mends: Default::default(),
             denoiser: Mutex::new(None),
             blur: OnceLock::new(),
             lateral: OnceLock::new(),
@@ -109,16 +109,14 @@ impl Analysis {
         self.samples_noise.get_or_init(measured).as_ref()
     }
 
-    /// What is to be put right in single samples, hot and dead ones among them or not; nothing in a clean picture.
-    pub(crate) fn mends(&self, hot_pixels: bool) -> &Arc<Mends> {
+    /// What is to be put right in samples, of what is wanted; nothing in a clean picture.
+    pub(crate) fn mends(&self, wanted: Wanted) -> &Arc<Mends> {
         let found = || {
             let (model, measured) = (self.noise_model()?, self.measured_noise()?);
-            Some(match hot_pixels {
-                true => Mends::of(&self.capture, &self.light, &model, measured),
-                false => Mends::of_greens(&self.capture, measured),
-            })
+            Some(Mends::of((&self.capture, &self.light), (&model, measured), wanted))
         };
-        self.mends[usize::from(hot_pixels)].get_or_init(|| Arc::new(found().unwrap_or_default()))
+        let mends = &self.mends[usize::from(wanted.hot_pixels)][usize::from(wanted.banding)];
+        mends.get_or_init(|| Arc::new(found().unwrap_or_default()))
     }
 
     /// The filter for noise: the last one, with what it knows of the frame, where the same is asked for again.

@@ -18,8 +18,8 @@
 
 pub mod recipe;
 pub use recipe::{
-    Balance, Bits, Crop, Demosaic, Denoise, Exposure, Flip, Gamut, Geometry, Highlights, HotPixels, Lens,
-    Look, Output, OutputSpace, Overlay, Points, PointsError, Recipe, Resize, Tones, Turn,
+    Balance, Bits, Crop, Demosaic, Denoise, DenoiseBy, Exposure, Flip, Gamut, Geometry, Highlights, Lens,
+    Look, Mending, Output, OutputSpace, Overlay, Points, PointsError, Recipe, Resize, Tones, Turn,
 };
 
 pub mod error;

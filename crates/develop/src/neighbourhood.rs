@@ -1,14 +1,12 @@
 //! The stages that look at a pixel's neighbours: from the samples of the sensor to the balanced camera RGB of a part of the
 //! picture.
 
-use std::sync::Arc;
-
 use darkroot_photo::{CameraSpace, Mosaic, Rect, Rgb, Size};
 
 use crate::base::Base;
 use crate::demosaic::reduce::{self, Reduction};
 use crate::demosaic::{self, debias};
-use crate::denoise::{self, Coarse, Denoiser};
+use crate::denoise::{self, Denoiser, OfFrame};
 use crate::geometry::{self, Warp, brighten, resample};
 use crate::grid::Grid;
 use crate::sharpen::{self, Sharpener};
@@ -29,8 +27,8 @@ pub(crate) struct Neighbourhood<'a> {
     border: usize,
     wider: usize,
     reduction: Option<Reduction>,
-    /// What takes away noise, with that of the coarse scales.
-    denoiser: Option<(&'a Denoiser, Arc<Coarse>)>,
+    /// What takes away noise, with what it knows of the frame.
+    denoiser: Option<(&'a Denoiser, OfFrame)>,
     sharpener: Option<&'a Sharpener>,
 }
 
@@ -51,10 +49,14 @@ pub(crate) struct Scratch {
 }
 
 impl<'a> Neighbourhood<'a> {
-    pub(crate) fn of(base: &'a Base, scale: Scale, cancel: &Cancel) -> Result<Self, Cancelled> {
+    /// For a rectangle of the upright picture.
+    pub(crate) fn of(
+        base: &'a Base,
+        scale: Scale,
+        upright: Rect,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
         let layout = base.capture.counts.layout();
-        let coarse =
-            |filter: &'a Arc<Denoiser>| Ok((&**filter, filter.coarse(&base.capture, &base.light, cancel)?));
         let reduction = (scale.bin() >= reduce::LEAST).then(|| Reduction::of(layout));
         let (grid, warp) = match &base.laid.warp {
             None => (Grid::of(base, scale), None),
@@ -64,16 +66,37 @@ impl<'a> Neighbourhood<'a> {
             }
         };
         let sharpener = base.sharpener.as_ref().filter(|_| reduction.is_none());
-        Ok(Self {
+        let mut made = Self {
             base,
             grid,
             warp,
             border: tile_border(&base.changes(), &base.readers(scale)),
             wider: sharpener.map_or(0, |_| sharpen::STAGE.border),
             reduction,
-            denoiser: base.denoiser.as_ref().map(coarse).transpose()?,
+            denoiser: None,
             sharpener,
-        })
+        };
+        if let Some(filter) = base.denoiser.as_ref().filter(|_| upright.size().area() > 0) {
+            let rect = made.grid.of_upright(upright);
+            let (begin, size) = match &made.warp {
+                None => made.mosaic_of(&made.grid, rect),
+                Some((warp, of_frame)) => {
+                    made.mosaic_of(of_frame, warp.needs(&warp.places(rect, made.grid.bin), made.grid.bin))
+                }
+            };
+            let needed = covered(&base.capture, begin, size);
+            made.denoiser = Some((filter, filter.of_frame((&base.capture, &base.light), needed, cancel)?));
+        }
+        Ok(made)
+    }
+
+    /// Where the mosaic begins in the frame that a rectangle of its grid is made of, and its size.
+    fn mosaic_of(&self, grid: &Grid, rect: Rect) -> ((isize, isize), Size) {
+        let (x, y) = grid.corner(rect);
+        let around = self.border + self.wider;
+        let length = |count: usize| count * grid.bin + 2 * around;
+        let size = Size { width: length(rect.width), height: length(rect.height) };
+        ((x - around as isize, y - around as isize), size)
     }
 
     /// How many columns a tile best has, where so many would be best for pixels of the frame as they are.
@@ -116,14 +139,12 @@ impl<'a> Neighbourhood<'a> {
         let (base, border, bin) = (self.base, self.border, grid.bin);
         let Scratch { denoised, mosaic, ends, camera, wide, sharpened, aligned, .. } = scratch;
         let (x, y) = grid.corner(rect);
-        let around = border + self.wider;
-        let size = Size { width: rect.width * bin + 2 * around, height: rect.height * bin + 2 * around };
-        let begin = (x - around as isize, y - around as isize);
+        let (begin, size) = self.mosaic_of(grid, rect);
         let (capture, light) = (&*base.capture, &*base.light);
         let levelled: &Levelled<'_> = match &self.denoiser {
             None => &|x, y, row| base.mends.levelled(capture, light, (x, y), row),
-            Some((filter, coarse)) => {
-                filter.denoise((capture, light), coarse, covered(capture, begin, size), denoised);
+            Some((filter, of_frame)) => {
+                filter.denoise((capture, light), of_frame, covered(capture, begin, size), denoised);
                 &|x, y, row| denoised.row(x, y, row)
             }
         };

@@ -19,9 +19,9 @@ use crate::geometry::{Geometry, Laid, Lens, lay};
 use crate::highlights::{CLIPPED, Rebuild, Treatment};
 use crate::lateral::Lateral;
 use crate::lut;
-use crate::mend::Mends;
+use crate::mend::{Mends, Wanted};
 use crate::noise::Noise;
-use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, HotPixels, Look, OutputSpace, Recipe};
+use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, Look, Mending, OutputSpace, Recipe};
 use crate::sharpen::Sharpener;
 use crate::tally::{Clipped, Tally};
 use crate::tone::Curve;
@@ -145,7 +145,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         OutputSpace::Rgb(space) => (space, space.curve),
         OutputSpace::Camera | OutputSpace::Raw => (RgbSpace::REC2020, TransferCurve::Linear),
     };
-    let mends = mends(analysis, recipe.hot_pixels, measuring);
+    let mends = mends(analysis, recipe, measuring);
     notes.extend(mends.notes());
     let denoiser = denoiser(analysis, recipe.denoise, as_it_is, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
@@ -217,12 +217,13 @@ fn noise_left(
     }
 }
 
-/// What is put right in single samples. A measurement gets them as they are.
-fn mends(analysis: &Analysis, hot_pixels: HotPixels, measuring: bool) -> Arc<Mends> {
-    match hot_pixels {
-        _ if measuring || analysis.capture().rendered => Arc::default(),
-        wanted => Arc::clone(analysis.mends(wanted == HotPixels::Auto)),
+/// What is put right in samples. A measurement gets them as they are.
+fn mends(analysis: &Analysis, recipe: &Recipe, measuring: bool) -> Arc<Mends> {
+    if measuring || analysis.capture().rendered {
+        return Arc::default();
     }
+    let [hot_pixels, banding] = [recipe.hot_pixels, recipe.banding].map(|mending| mending == Mending::Auto);
+    Arc::clone(analysis.mends(Wanted { hot_pixels, banding }))
 }
 
 /// Lateral chromatic aberration that is to be corrected: where something certain is known, and no correction of the lens has its
@@ -247,7 +248,7 @@ fn denoiser(
     }
     let model = analysis.noise_model()?;
     let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
-    analysis.denoiser(Asked { model, multipliers, strength, limits, mends: Arc::clone(mends) })
+    analysis.denoiser(Asked { by: asked.by, model, multipliers, strength, limits, mends: Arc::clone(mends) })
 }
 
 /// Blurs that are undone, pixels: below the first there is nothing to do; beyond the last a picture is not in focus.

@@ -14,7 +14,9 @@ pub struct Recipe {
     /// What becomes of clipped highlights.
     pub highlights: Highlights,
     /// What becomes of hot and dead pixels.
-    pub hot_pixels: HotPixels,
+    pub hot_pixels: Mending,
+    /// What becomes of rows that lie too high or too low.
+    pub banding: Mending,
     /// How much noise is taken away.
     pub denoise: Denoise,
     /// How missing colours are interpolated.
@@ -83,19 +85,32 @@ pub enum Highlights {
     Keep,
 }
 
-/// What becomes of pixels that are hot or dead.
+/// What becomes of faults of the sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum HotPixels {
-    /// They take the light of those around them; in the linear look and in camera RGB they stay.
+pub enum Mending {
+    /// They are put right where they are certain; in the linear look and in camera RGB they stay.
     #[default]
     Auto,
     /// They stay.
     Off,
 }
 
+/// What noise is told by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DenoiseBy {
+    /// By how strong details of each scale are around a place: fast.
+    #[default]
+    Scales,
+    /// By blocks of the picture that are like each other: better, and slow. Where there is nothing to compare, under other
+    /// arrays than Bayer's and in the smallest frames, by scales.
+    Likeness,
+}
+
 /// How much noise is taken away before interpolation: shares of what the noise model expects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Denoise {
+    /// How it is told.
+    pub by: DenoiseBy,
     /// Of all; `None` for what suits the look: all of it, in the linear look none.
     pub amount: Option<f32>,
     /// Of brightness, times `amount`.
@@ -106,7 +121,7 @@ pub struct Denoise {
 
 impl Default for Denoise {
     fn default() -> Self {
-        Self { amount: None, luma: 1.0, chroma: 1.0 }
+        Self { by: DenoiseBy::Scales, amount: None, luma: 1.0, chroma: 1.0 }
     }
 }
 

@@ -133,7 +133,7 @@ impl<'a> Render<'a> {
     fn of(plan: &'a Plan, view: View, cancel: &'a Cancel, columns: usize) -> Result<Self, Cancelled> {
         let nothing = Rect { width: 0, height: 0, ..view.rect };
         let rect = view.rect.intersection(plan.whole(view.scale).rect).unwrap_or(nothing);
-        let neighbourhood = Neighbourhood::of(&plan.base, view.scale, cancel)?;
+        let neighbourhood = Neighbourhood::of(&plan.base, view.scale, rect, cancel)?;
         let columns = neighbourhood.columns(columns).clamp(1, rect.width.max(1));
         Ok(Self { plan, neighbourhood, rect, columns, kept: None, cancel })
     }

@@ -2,7 +2,7 @@
 
 use darkroot::{ChromaSubsampling, EncodeOptions, Format, Key, Settings};
 use darkroot_colour::{RgbSpace, Vector3, white};
-use darkroot_develop::{Bits, HotPixels, Look, OutputSpace};
+use darkroot_develop::{Bits, Look, Mending, OutputSpace};
 use darkroot_photo::{Metadata, Picture, PictureSpace, Samples};
 use serde::Deserialize;
 
@@ -55,7 +55,8 @@ pub(crate) fn with_noise(mut settings: Settings) -> Settings {
 /// find than to mend, is left in.
 pub(crate) fn at_once(settings: Settings) -> Settings {
     let mut settings = with_noise(settings);
-    settings.recipe.hot_pixels = HotPixels::Off;
+    settings.recipe.hot_pixels = Mending::Off;
+    settings.recipe.banding = Mending::Off;
     settings.recipe.geometry.keep_fringes = true;
     settings.recipe.sharpen = Some(0.0);
     settings

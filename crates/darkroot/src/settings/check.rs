@@ -71,6 +71,7 @@ pub(super) fn imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), Sett
         ("white-balance", recipe.balance == fixed.balance),
         ("highlights", recipe.highlights == fixed.highlights),
         ("hot-pixels", recipe.hot_pixels == fixed.hot_pixels),
+        ("banding", recipe.banding == fixed.banding),
         ("denoise", recipe.denoise == fixed.denoise),
         ("sharpen", recipe.sharpen == fixed.sharpen),
         ("demosaic", recipe.demosaic == fixed.demosaic),

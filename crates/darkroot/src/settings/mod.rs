@@ -23,6 +23,7 @@ pub mod table;
 pub use table::SETTINGS;
 
 pub mod key;
+mod noise;
 pub use key::Key;
 
 mod describe;

@@ -10,6 +10,7 @@ use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSUR
 use super::geometry::{
     CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
 };
+use super::noise::{BANDING, DENOISE, DENOISE_CHROMA, DENOISE_LUMA, HOT_PIXELS};
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{
@@ -17,7 +18,7 @@ use super::tones::{
     WHITE,
 };
 use super::words::{
-    AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, HOT_PIXELS, LOOKS, SWITCH, plain,
+    AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, LOOKS, SWITCH, plain,
 };
 
 /// Writes what a text means into its place.
@@ -27,7 +28,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 57] = [
+pub const SETTINGS: [Setting; 58] = [
     Setting {
         name: "format",
         alias: None,
@@ -175,55 +176,11 @@ pub const SETTINGS: [Setting; 57] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.highlights, one_of(&HIGHLIGHTS, text)),
     },
-    Setting {
-        name: "hot-pixels",
-        alias: None,
-        noun: "way with hot pixels",
-        kind: Kind::Words(const { &plain(&HOT_PIXELS) }),
-        default: AUTO,
-        group: Group::Picture,
-        placeholder: "",
-        help: "What becomes of hot and dead pixels (the linear look and camera RGB keep them)",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.hot_pixels, one_of(&HOT_PIXELS, text)),
-    },
-    Setting {
-        name: "denoise",
-        alias: None,
-        noun: "amount of denoising",
-        kind: Kind::Text { form: "auto, off, or a number from 0 to 2", example: "\"off\" or \"0.5\"" },
-        default: AUTO,
-        group: Group::Picture,
-        placeholder: "AMOUNT",
-        help: "Noise taken away before interpolation: auto (all that was measured; none in the linear look and in camera \
-               RGB), off, or so many times that, 0 to 2",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.amount, amount(text, "amount of denoising")),
-    },
-    Setting {
-        name: "denoise-luma",
-        alias: None,
-        noun: "share of denoising",
-        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
-        default: "1",
-        group: Group::Picture,
-        placeholder: "SHARE",
-        help: "Share of it for noise of brightness, 0 to 2",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.luma, number(text).map(|n| n as f32)),
-    },
-    Setting {
-        name: "denoise-chroma",
-        alias: None,
-        noun: "share of denoising",
-        kind: Kind::Number { least: 0.0, most: 2.0, whole: false, unit: "" },
-        default: "1",
-        group: Group::Picture,
-        placeholder: "SHARE",
-        help: "Share of it for noise of colour, 0 to 2",
-        changes: Changes::Picture,
-        set: |to, text| put(&mut to.recipe.denoise.chroma, number(text).map(|n| n as f32)),
-    },
+    HOT_PIXELS,
+    BANDING,
+    DENOISE,
+    DENOISE_LUMA,
+    DENOISE_CHROMA,
     Setting {
         name: "sharpen",
         alias: None,

@@ -1,6 +1,6 @@
 //! The words that settings of the table have for their values.
 
-use darkroot_develop::{Bits, Demosaic, Gamut, Highlights, HotPixels, Look};
+use darkroot_develop::{Bits, Demosaic, Gamut, Highlights, Look, Mending};
 use darkroot_encode::{ChromaSubsampling, Format, TiffCompression, WebpKind};
 use darkroot_raw::Decoder;
 
@@ -83,9 +83,13 @@ pub(super) const COMPRESSION: [Word<TiffCompression>; 2] = [
     word("deflate", TiffCompression::Deflate, "Lossless"),
     word("none", TiffCompression::None, "Any program reads it, and guidelines for archives ask for it"),
 ];
-pub(super) const HOT_PIXELS: [Word<HotPixels>; 2] = [
-    word(AUTO, HotPixels::Auto, "They take the light of those around them; stars stay"),
-    word("off", HotPixels::Off, "They stay"),
+pub(super) const BANDING: [Word<Mending>; 2] = [
+    word(AUTO, Mending::Auto, "It is taken away where it is certain"),
+    word("off", Mending::Off, "It stays"),
+];
+pub(super) const HOT_PIXELS: [Word<Mending>; 2] = [
+    word(AUTO, Mending::Auto, "They take the light of those around them; stars stay"),
+    word("off", Mending::Off, "They stay"),
 ];
 pub(super) const DEMOSAIC: [Word<Demosaic>; 2] = [
     word("best", Demosaic::Best, "The best for the sensor"),

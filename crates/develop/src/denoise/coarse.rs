@@ -25,11 +25,6 @@ pub(crate) struct Coarse {
 }
 
 impl Coarse {
-    /// For filters that look at no coarse scales.
-    pub(super) fn none() -> Self {
-        Self { columns: 0, rows: 0, planes: Default::default() }
-    }
-
     /// Looks at the whole active area.
     pub(super) fn of(
         filter: &Denoiser,

@@ -24,6 +24,7 @@ pub use model::{Line, NoiseModel};
 mod any;
 mod bayer;
 mod coarse;
+mod likeness;
 mod measure;
 mod pyramid;
 mod rotation;
@@ -32,7 +33,6 @@ mod shrink;
 mod stabilise;
 
 pub(crate) use bayer::Scratch;
-pub(crate) use coarse::Coarse;
 pub(crate) use measure::{Measured, measured};
 
 use std::sync::{Arc, Mutex, PoisonError};
@@ -41,14 +41,18 @@ use darkroot_photo::{Capture, Cfa, Layout, Rect};
 
 use crate::light::{LinearLight, layout_from};
 use crate::mend::Mends;
+use crate::recipe::DenoiseBy;
 use crate::stage::{Stage, WhenSmaller};
 use crate::view::{Cancel, Cancelled};
+use coarse::Coarse;
+use likeness::Clean;
 use rotation::Rotation;
 use rows::Source;
 use shrink::UnitNoise;
 use stabilise::Stabiliser;
 
-/// What it asks of a tile: pixels around it, of which it gives none.
+/// What it asks of a tile: pixels around it, of which it gives none. What reaches farther is found before tiles begin
+/// ([`OfFrame`]).
 pub const STAGE: Stage = Stage { name: "noise", border: bayer::BORDER, when_smaller: WhenSmaller::Same };
 
 /// How much noise is taken away.
@@ -63,6 +67,7 @@ pub struct Strength {
 /// What the filter is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Asked {
+    pub(crate) by: DenoiseBy,
     /// Noise of the samples by their light, before the file's corrections and before balancing.
     pub(crate) model: NoiseModel,
     /// Balanced, grey has equal channels.
@@ -88,8 +93,19 @@ pub(crate) struct Denoiser {
     unit: UnitNoise,
     /// How strongly each of the four rotated planes is shrunk.
     strengths: [f32; 4],
-    /// The noise of the coarse scales, once somebody has looked for it.
-    coarse: Mutex<Option<Arc<Coarse>>>,
+    /// What somebody has found out about the frame already.
+    of_frame: Mutex<Option<OfFrame>>,
+}
+
+/// What a filter has to know of a frame, or of a large part of it, before it looks at tiles.
+#[derive(Debug, Clone)]
+pub(crate) enum OfFrame {
+    /// Nothing.
+    Nothing,
+    /// The noise of the coarse scales.
+    Coarse(Arc<Coarse>),
+    /// All that there is to know.
+    Clean(Arc<Clean>),
 }
 
 impl Denoiser {
@@ -122,32 +138,44 @@ impl Denoiser {
             rotation: Rotation::with_grey(grey, channels),
             unit: UnitNoise::new(),
             strengths: [luma, chroma, chroma, chroma],
-            coarse: Mutex::new(None),
+            of_frame: Mutex::new(None),
             asked,
         })
     }
 
-    /// The noise of the coarse scales, found when it is first asked for. Two who ask at once both look for it, and find the
-    /// same: nobody waits for a lock while threads of one pool help each other.
+    /// What is to be known of the frame before this rectangle of it can be denoised (inside the active area), found when it is
+    /// first asked for. Two who ask at once both look for it, and find the same: nobody waits for a lock while threads of one
+    /// pool help each other.
     ///
     /// # Errors
     /// Somebody cancelled it.
-    pub(crate) fn coarse(
+    pub(crate) fn of_frame(
         &self,
-        capture: &Capture,
-        light: &LinearLight,
+        (capture, light): (&Capture, &LinearLight),
+        rect: Rect,
         cancel: &Cancel,
-    ) -> Result<Arc<Coarse>, Cancelled> {
-        let known = || self.coarse.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(coarse) = &*known() {
-            return Ok(Arc::clone(coarse));
-        }
+    ) -> Result<OfFrame, Cancelled> {
         if self.any.is_some() {
-            return Ok(Arc::new(Coarse::none()));
+            return Ok(OfFrame::Nothing);
         }
-        let found = Arc::new(Coarse::of(self, capture, light, cancel)?);
-        *known() = Some(Arc::clone(&found));
+        let known = || self.of_frame.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*known() {
+            Some(OfFrame::Clean(clean)) if !clean.covers(rect) => {}
+            Some(of_frame) => return Ok(of_frame.clone()),
+            None => {}
+        }
+        let found = match self.compares(capture) {
+            true => OfFrame::Clean(Arc::new(Clean::of(self, (capture, light), rect, cancel)?)),
+            false => OfFrame::Coarse(Arc::new(Coarse::of(self, capture, light, cancel)?)),
+        };
+        *known() = Some(found.clone());
         Ok(found)
+    }
+
+    /// Whether noise is told by likeness.
+    fn compares(&self, capture: &Capture) -> bool {
+        let area = capture.active_area;
+        self.asked.by == DenoiseBy::Likeness && area.width.min(area.height) >= likeness::SMALLEST
     }
 
     fn source<'a>(&'a self, capture: &'a Capture, light: &'a LinearLight) -> Source<'a> {
@@ -157,7 +185,10 @@ impl Denoiser {
     /// Share of the variance that is left where there is nothing but noise.
     pub(crate) fn left(&self) -> f32 {
         let Strength { luma, chroma } = self.asked.strength;
-        let kept = |s: f32| (1.0 - shrink::removed(shrink::threshold(1.0, s), 1.0)).powi(2);
+        let kept = |s: f32| match self.asked.by {
+            DenoiseBy::Scales => (1.0 - shrink::removed(shrink::threshold(1.0, s), 1.0)).powi(2),
+            DenoiseBy::Likeness => likeness::left_of_noise(s),
+        };
         if self.any.is_some() {
             return 1.0;
         }
@@ -169,13 +200,16 @@ impl Denoiser {
     pub(crate) fn denoise(
         &self,
         (capture, light): (&Capture, &LinearLight),
-        coarse: &Coarse,
+        of_frame: &OfFrame,
         rect: Rect,
         scratch: &mut Scratch,
     ) {
-        match &self.any {
-            Some(any) => any.denoise(self.source(capture, light), rect, scratch),
-            None => bayer::denoise(self, self.source(capture, light), coarse, rect, scratch),
+        let source = self.source(capture, light);
+        match (of_frame, &self.any) {
+            (OfFrame::Coarse(coarse), _) => bayer::denoise(self, source, coarse, rect, scratch),
+            (OfFrame::Clean(clean), _) => clean.denoise(rect, scratch),
+            (OfFrame::Nothing, Some(any)) => any.denoise(source, rect, scratch),
+            (OfFrame::Nothing, None) => unreachable!("filters of Bayer arrays know something of the frame"),
         }
     }
 }

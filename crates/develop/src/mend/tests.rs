@@ -2,18 +2,19 @@
 
 use darkroot_photo::{BlackLevel, Capture, Cfa, Counts, Layout, Mosaic, Size, WhiteLevel};
 
-use super::Mends;
+use super::{Mends, Wanted};
 use crate::denoise::{Line, NoiseModel, Random, measured};
 use crate::light::LinearLight;
 
-const SIZE: Size = Size { width: 600, height: 400 };
+pub(super) const SIZE: Size = Size { width: 600, height: 400 };
 /// 3 electrons of read noise, 0.25 counts an electron.
-const ELECTRON: f32 = 0.25 / 16000.0;
+pub(super) const ELECTRON: f32 = 0.25 / 16000.0;
 const LINE: Line = Line { slope: ELECTRON, floor: 9.0 * ELECTRON * ELECTRON };
-const BLACK: f32 = 200.0;
+pub(super) const BLACK: f32 = 200.0;
+const EVERYTHING: Wanted = Wanted { hot_pixels: true, banding: true };
 
 /// Electrons as counts of a 14-bit sensor.
-fn capture(electrons: &[f32], seed: u64) -> Capture {
+pub(super) fn capture(electrons: &[f32], seed: u64) -> Capture {
     let mut random = Random::new(seed);
     let count = |&n: &f32| {
         let noisy = n + (n.max(0.0) + 9.0).sqrt() * random.normal();
@@ -26,10 +27,10 @@ fn capture(electrons: &[f32], seed: u64) -> Capture {
     Capture { black, white, ..Capture::bare(counts) }
 }
 
-fn mends(capture: &Capture) -> Mends {
+pub(super) fn mends(capture: &Capture) -> Mends {
     let light = LinearLight::of(capture);
     let measured = measured(capture, &light, [1.0; 3]).unwrap();
-    Mends::of(capture, &light, &NoiseModel { channels: [LINE; 3] }, &measured)
+    Mends::of((capture, &light), (&NoiseModel { channels: [LINE; 3] }, &measured), EVERYTHING)
 }
 
 /// Sky of 40 electrons with stars of some width (full, at half of the maximum) and colours at random places; the electrons, and
