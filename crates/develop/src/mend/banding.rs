@@ -52,7 +52,7 @@ const LAGS: usize = 6;
 /// Offsets of rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Banding {
-    /// What to take from the light of each row of the active area; the last few may be missing.
+    /// What to take from the light of each row of the active area.
     pub(super) offsets: Vec<f32>,
     /// Their standard deviation, as a share of that of the noise of dark samples.
     pub(super) strength: f32,
@@ -88,16 +88,17 @@ pub(super) fn found(
     cfa: &Cfa,
 ) -> Option<Banding> {
     let area = capture.active_area;
-    let (bands, beside) = (area.height / ROWS, area.width / COLUMNS);
-    if bands < 2 || beside < 4 {
+    let beside = area.width / COLUMNS;
+    if area.height < 2 * ROWS || beside < 4 {
         return None;
     }
+    let tops = tops(area.height);
     let windows: Vec<Window> =
-        (0..bands).into_par_iter().flat_map_iter(|band| of_band(capture, light, model, cfa, band)).collect();
+        tops.par_iter().flat_map_iter(|top| of_band(capture, light, model, cfa, *top)).collect();
     let mut lights: Vec<f32> = windows.iter().map(|w| w.light).collect();
     lights.sort_unstable_by(f32::total_cmp);
     let (dark, middle) = (*lights.get(lights.len() / DARK)?, *lights.get(lights.len() / 2)?);
-    let mut rows: Vec<Row> = vec![[(0.0, 0.0); KINDS]; bands * ROWS];
+    let mut rows: Vec<Row> = vec![[(0.0, 0.0); KINDS]; area.height];
     let mut lights = [(0.0, 0.0); 2];
     for window in &windows {
         let is_bright = window.light > middle;
@@ -126,14 +127,14 @@ pub(super) fn found(
     (strength >= VISIBLE).then_some(Banding { offsets, strength: strength as f32 })
 }
 
-/// The flat windows of a band of rows.
-fn of_band(
-    capture: &Capture,
-    light: &LinearLight,
-    model: &NoiseModel,
-    cfa: &Cfa,
-    band: usize,
-) -> Vec<Window> {
+/// Where bands begin, of [`ROWS`] each, in even rows of the active area. The last one may lie over part of the one before.
+pub(super) fn tops(height: usize) -> Vec<usize> {
+    let last = height.saturating_sub(ROWS) / 2 * 2;
+    (0..last).step_by(ROWS).chain([last]).collect()
+}
+
+/// The flat windows of the band of rows that begins there.
+fn of_band(capture: &Capture, light: &LinearLight, model: &NoiseModel, cfa: &Cfa, top: usize) -> Vec<Window> {
     let area = capture.active_area;
     let beside = area.width / COLUMNS;
     let count = beside.min(MOST_WINDOWS);
@@ -142,7 +143,7 @@ fn of_band(
     for number in 0..count {
         let x = number * beside / count * COLUMNS;
         for (i, row) in samples.chunks_exact_mut(COLUMNS).enumerate() {
-            light.levelled(&capture.counts, area.x + x, area.y + band * ROWS + i, row);
+            light.levelled(&capture.counts, area.x + x, area.y + top + i, row);
         }
         for (across, down) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             let line = model.channels[cfa.at(across, down).plane().unwrap_or(1)];
@@ -162,7 +163,7 @@ fn of_band(
                 let rows = less_line(means);
                 // Two of the numbers went into the line.
                 let weight = WIDE as f32 / expected * TALL as f32 / (TALL - 2) as f32;
-                windows.push(Window { number, first: band * ROWS + down, light: level, rows, weight });
+                windows.push(Window { number, first: top + down, light: level, rows, weight });
             }
         }
     }
@@ -203,8 +204,8 @@ fn agreement(
     lag: usize,
 ) -> Agreement {
     let (mut product, mut variance, mut count) = (0.0, 0.0, 0);
-    for band in rows.chunks_exact(ROWS) {
-        for (a, b) in band.iter().zip(&band[lag..]) {
+    for band in rows.chunks(ROWS) {
+        for (a, b) in band.iter().zip(band.iter().skip(lag)) {
             if let (Some(a), Some(b)) = (mean(a, &one), mean(b, &other)) {
                 product += a.0 * b.0;
                 variance += a.1 * b.1;

@@ -3,7 +3,7 @@
 use darkroot_photo::Capture;
 use rayon::prelude::*;
 
-use super::banding::{CERTAIN, ROWS, TALL, less_line};
+use super::banding::{CERTAIN, ROWS, TALL, less_line, tops};
 use crate::light::LinearLight;
 
 /// Columns at both ends of the masked ones that are not looked at: light leaks in, and readout settles.
@@ -27,14 +27,14 @@ pub(super) fn offsets(
         return None;
     }
     // Two means of each row, of columns that lie among each other; pairs of columns have both of its colours.
-    let of_band = |band: usize| {
-        let mut halves = [[0f32; ROWS]; 2];
+    let of_band = |top: &usize| {
+        let (mut one, mut other) = ([0f32; ROWS], [0f32; ROWS]);
         let mut row = vec![0f32; columns];
-        for y in 0..ROWS {
-            light.levelled(&capture.counts, EDGE, area.y + band * ROWS + y, &mut row);
+        for (y, (one, other)) in one.iter_mut().zip(&mut other).enumerate() {
+            light.levelled(&capture.counts, EDGE, area.y + top + y, &mut row);
             for four in row.chunks_exact(4) {
-                halves[0][y] += four[0] + four[1];
-                halves[1][y] += four[2] + four[3];
+                *one += four[0] + four[1];
+                *other += four[2] + four[3];
             }
         }
         let less = |sums: [f32; ROWS]| {
@@ -43,10 +43,14 @@ pub(super) fn offsets(
             let parts: [[f32; TALL]; 2] = [of(0), of(1)];
             std::array::from_fn::<f64, ROWS, _>(|y| f64::from(parts[y % 2][y / 2]))
         };
-        let [one, other] = halves.map(less);
-        (0..ROWS).map(move |y| (one[y], other[y]))
+        let [one, other] = [one, other].map(less);
+        std::array::from_fn::<_, ROWS, _>(|y| (one[y], other[y]))
     };
-    let halves: Vec<(f64, f64)> = (0..shown.len() / ROWS).into_par_iter().flat_map_iter(of_band).collect();
+    let tops = tops(shown.len());
+    let mut halves = vec![(0.0, 0.0); shown.len()];
+    for (top, band) in tops.iter().zip(tops.par_iter().map(of_band).collect::<Vec<_>>()) {
+        halves[*top..top + ROWS].copy_from_slice(&band);
+    }
     let count = halves.len() as f64;
     let product = halves.iter().map(|(a, b)| a * b).sum::<f64>() / count;
     // Of each half.

@@ -19,7 +19,7 @@ const STRIP: usize = 32;
 /// far away, and so is another one on the far side of that.
 pub(super) const AROUND: usize = 2 * REACH + 2 * SIDE;
 
-const _: () = assert!(STRIP % STEP == 0 && SPAN % STEP == 0);
+const _: () = assert!(STRIP.is_multiple_of(STEP) && SPAN.is_multiple_of(STEP));
 // Strips that have another one between them touch different rows.
 const _: () = assert!(STRIP / 2 >= REACH + SIDE);
 

@@ -39,10 +39,10 @@ fn transformed(stack: &Stack, back: bool) -> Stack {
     let n = stack.len();
     let turn = |k: usize, i: usize| if back { (i, k) } else { (k, i) };
     let mut along = vec![[[0.0; 8]; 8]; n];
-    for k in 0..n {
-        for i in 0..n {
+    for (k, along) in along.iter_mut().enumerate() {
+        for (i, block) in stack.iter().enumerate() {
             let (of, at) = turn(k, i);
-            for (to, from) in along[k].as_flattened_mut().iter_mut().zip(stack[i].as_flattened()) {
+            for (to, from) in along.as_flattened_mut().iter_mut().zip(block.as_flattened()) {
                 *to += haar(of, at, n) * from;
             }
         }
@@ -52,10 +52,9 @@ fn transformed(stack: &Stack, back: bool) -> Stack {
         let down = |k: usize, x: usize| -> f64 {
             (0..8).map(|i| turn(k, i)).zip(block).map(|((of, at), row)| cosine(of, at) * row[x]).sum()
         };
-        for k in 0..8 {
-            for l in 0..8 {
-                out[k][l] =
-                    (0..8).map(|x| (turn(l, x), x)).map(|((of, at), x)| cosine(of, at) * down(k, x)).sum();
+        for (k, row) in out.iter_mut().enumerate() {
+            for (l, v) in row.iter_mut().enumerate() {
+                *v = (0..8).map(|x| (turn(l, x), x)).map(|((of, at), x)| cosine(of, at) * down(k, x)).sum();
             }
         }
     }

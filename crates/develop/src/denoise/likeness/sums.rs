@@ -80,9 +80,8 @@ impl Rows<'_> {
                 for i in 0..SIDE {
                     sums[i] += weight * row[i];
                 }
-                let weights = self.kept(4 + k, *x, y + r);
-                for i in 0..SIDE {
-                    weights[i] += weight;
+                for sum in self.kept(4 + k, *x, y + r) {
+                    *sum += weight;
                 }
             }
         }
