@@ -204,11 +204,18 @@ fn write_in_bands<T: darkroot_encode::Sample + darkroot_develop::transfer::Sampl
 ) -> Result<(), Error> {
     let outline = Outline { size: plan.size(), space: plan.picture_space() };
     write_file(to, job, settings, |out| {
-        darkroot_encode::write_in_bands(&outline, format, &encoding(job, settings), metadata, out, |rows, take| {
-            plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[T]| {
-                Ok(take(band, samples)?)
-            })
-        })
+        darkroot_encode::write_in_bands(
+            &outline,
+            format,
+            &encoding(job, settings),
+            metadata,
+            out,
+            |rows, take| {
+                plan.render_bands(plan.whole(Scale::FULL), cancel, rows, |band, samples: &[T]| {
+                    Ok(take(band, samples)?)
+                })
+            },
+        )
     })
 }
 
