@@ -122,7 +122,7 @@ fn views_turned_reduced_and_warped_are_those_of_the_whole_frame() {
     let mut noisy = shot(&Scene::still_life(SIZE), -4.0, Some(9));
     noisy.orientation = Orientation::Rotate90;
     let straight = Recipe { crop: Crop::Active, ..best(Recipe::default()) };
-    let geometry = Geometry { straighten: 3.0, ..straight.geometry.clone() };
+    let geometry = Geometry { straighten: 3.0, ..straight.geometry };
     for recipe in [straight.clone(), Recipe { geometry, crop: Crop::Default, ..straight }] {
         for scale in [Scale::FULL, Scale::QUARTER] {
             let known = plan(&noisy, None, &recipe).unwrap();

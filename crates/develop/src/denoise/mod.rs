@@ -52,7 +52,7 @@ use shrink::UnitNoise;
 use stabilise::Stabiliser;
 
 /// What it asks of a tile: pixels around it, of which it gives none. What reaches farther is found before tiles begin
-/// ([`OfFrame`]).
+/// (`OfFrame`).
 pub const STAGE: Stage = Stage { name: "noise", border: bayer::BORDER, when_smaller: WhenSmaller::Same };
 
 /// How much noise is taken away.
