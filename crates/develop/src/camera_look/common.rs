@@ -59,7 +59,7 @@ mod tests {
             let off = (found.lightness(at) - wanted.lightness(at)).abs();
             assert!(off < 1.5, "{at}: {off}");
         }
-        assert!((1.09..1.12).contains(&common.saturation), "{}", common.saturation);
+        assert!((1.09..=1.12).contains(&common.saturation), "{}", common.saturation);
         assert_eq!(super::common(&[]), None);
     }
 }

@@ -94,9 +94,13 @@ fn workers_hold_no_more_memory_than_they_say() {
     for (format, bits) in
         [("jpeg", "8"), ("png", "8"), ("png", "16"), ("tiff", "8"), ("tiff", "16"), ("tiff", "32")]
             .into_iter()
-            .chain([("webp", "8"), ("avif", "8"), ("exr", "32"), ("jxl", "8"), ("jxl", "16")])
+            .chain([("webp", "8"), ("avif", "8"), ("exr", "32"), ("jxl", "8"), ("jxl", "16"), ("dng", "16")])
     {
         assert_holds_what_it_says(&desk, "in", &["--format", format, "--bits", bits]);
+    }
+    // Light above white.
+    for format in ["jpeg", "avif"] {
+        assert_holds_what_it_says(&desk, "in", &["--format", format, "--hdr", "2"]);
     }
     // And where noise is told by likeness, which looks at more.
     let exposure = Exposure { stops: -4.0, noise: Some(1), ..Exposure::default() };
@@ -107,7 +111,7 @@ fn workers_hold_no_more_memory_than_they_say() {
 
 #[cfg(target_os = "linux")]
 fn assert_holds_what_it_says(desk: &Desk, folder: &str, settings: &[&str]) {
-    let out = settings.concat();
+    let out = format!("out{}", settings.concat());
     let run =
         desk.run(&[&["batch", folder, "-o", &out, "--json", "--redo", "--jobs", "1"], settings].concat());
     assert_eq!(run.code, 0, "{}", run.err);
