@@ -7,12 +7,13 @@ from typing import Literal, TypedDict
 from . import Profile
 
 class Settings(TypedDict, total=False):
-    format: Literal["auto", "jpeg", "png", "tiff", "webp", "avif", "exr", "jxl"] | None
+    format: Literal["auto", "jpeg", "png", "tiff", "webp", "avif", "exr", "jxl", "dng"] | None
     space: str | float | Sequence[float] | None
     bits: Literal["auto", 8, 16, 32] | None
     quality: int | None
     chroma: Literal[444, 422, 420] | None
     progressive: bool | None
+    hdr: str | float | Sequence[float] | None
     compression: Literal["deflate", "none"] | None
     webp: Literal["lossless", "lossy"] | None
     metadata: Literal["all", "no-gps", "basic", "none"] | None
@@ -51,7 +52,7 @@ class Settings(TypedDict, total=False):
     demosaic: Literal["best", "bilinear"] | None
     rotate: Literal[0, 90, 180, 270] | None
     flip: Literal["off", "horizontal", "vertical"] | None
-    straighten: float | None
+    straighten: str | float | Sequence[float] | None
     perspective: str | float | Sequence[float] | None
     lens: Literal["auto", "file", "lensfun", "off"] | None
     vignetting: bool | None

@@ -82,7 +82,7 @@ fn a_straightened_picture_shows_what_lies_there_and_nothing_else() {
 
 #[test]
 fn what_the_lens_did_is_undone_as_the_file_says() {
-    let planes = vec![
+    let planes = [
         [0.985, 0.03, -0.01, 0.002, 0.001, -0.0005],
         [0.98, 0.035, -0.012, 0.001, 0.001, -0.0005],
         [0.975, 0.04, -0.012, 0.001, 0.001, -0.0005],
