@@ -32,7 +32,7 @@ def camera_rgb(path, *, scale=1, region=None, threads=None, cancel=None, **setti
 def develop_file(src, dst, *, overwrite=False, recipe=None, folders=False, threads=None, cancel=None, **settings):
     """Develops a file into a picture, as ``darkroot develop SRC -o DST`` does, bit for bit.
 
-    The ending of ``dst`` names the format: .jpg, .png, .tif, .webp, .avif, .exr or .jxl. It is absent, the old one, or the
+    The ending of ``dst`` names the format: .jpg, .png, .tif, .webp, .avif, .exr, .jxl or .dng. It is absent, the old one, or the
     complete new one, whatever happens. Both may be URLs that fsspec knows.
 
     ``folders=True`` takes what ``darkroot.toml`` in the folders above and sidecars beside the file say, as the program does;

@@ -163,7 +163,8 @@ def darktable(path, folder, wanted, good, size):
     out = folder / "dt.tif"
     command = ["darktable-cli", path, out, "--icc-type", "LIN_REC2020", "--apply-custom-presets", "false", "--core"]
     command += ["--configdir", folder / "dt", "--library", ":memory:"]
-    command += ["--conf", "plugins/darkroom/workflow=none", "--conf", "plugins/imageio/format/tiff/bpp=32"]
+    command += ["--conf", "plugins/darkroom/workflow=none", "--conf", "plugins/imageio/format/tiff/bpp=32",
+                "--conf", "plugins/imageio/format/tiff/compress=0"]
     done = subprocess.run(command, capture_output=True, text=True)
     if not out.exists():
         print(f"  darktable: {done.stdout.strip()[-200:]} {done.stderr.strip()[-200:]}")
