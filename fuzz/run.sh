@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 seconds=$1
 shift
 all=(screen flashraw rawloader develop exif opcodes preview profile dcp icc cube clf cgats cxf layout cht spectra recipe
-    journal worker picture delivered xmp iptc)
+    journal worker picture delivered xmp iptc lut)
 [ $# -gt 0 ] || set -- "${all[@]}"
 
 [ -d fuzz/corpus ] || cargo run -q -p darkroot-tests --example fuzz_corpora -- fuzz/corpus
