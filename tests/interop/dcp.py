@@ -9,47 +9,17 @@ Needs rawtherapee-cli (Debian: rawtherapee), transicc (Debian: liblcms2-utils) a
 code 1 when a mean is above 1 dE2000, or above 0.5 where it interpolates: with one of both lights alone it were 0.9.
 """
 import struct
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import chart
 import numpy as np
+import rawtherapee
 
-OUTPUT = Path("/usr/share/rawtherapee/iccprofiles/output/RTv4_Large.icc")
 KELVIN = {17: 2856, 21: 6504}  # By LightSource of Exif.
 SIDE = 64  # pixels of a patch
 NEUTRAL = {"D65": [0.47, 1.0, 0.68], "A": [0.75, 1.0, 0.35]}
-RECIPE = """[Version]
-AppVersion=5.9
-Version=349
-[Exposure]
-Auto=false
-HistogramMatching=false
-[HLRecovery]
-Enabled=false
-[White Balance]
-Enabled=true
-Setting=Camera
-[Color Management]
-InputProfile=file:{dcp}
-ToneCurve=false
-ApplyLookTable=false
-ApplyBaselineExposureOffset=false
-ApplyHueSatMap={table}
-DCPIlluminant=0
-WorkingProfile=ProPhoto
-OutputProfile=RTv4_Large
-OutputProfileIntent=Relative
-OutputBPC=false
-[RAW]
-CA=false
-HotPixelFilter=false
-DeadPixelFilter=false
-[RAW Bayer]
-Method=fast
-"""
 
 
 def tiff(fields, magic, pieces=b""):
@@ -128,10 +98,7 @@ def developed(path):
         for r in range(4)
         for c in range(6)
     ]
-    lines = "".join(f"{r:.9g} {g:.9g} {b:.9g}\n" for r, g, b in 255 * np.array(middle))
-    command = ["transicc", "-n", "-c0", "-t1", "-i", str(OUTPUT), "-o", "*XYZ"]
-    out = subprocess.run(command, input=lines, capture_output=True, text=True, check=True).stdout
-    return np.array([[float(v) for v in line.split()] for line in out.split("\n") if line.strip()]) / 100
+    return rawtherapee.xyz(np.array(middle))
 
 
 def matrix(dcp, tag):
@@ -170,19 +137,17 @@ class Bench:
         rgb = chart.chart_rgb(self.program, camera, light)
         wanted = chart.apply(self.program, profile or camera, light, rgb)
         color_matrix = matrix(read_tiff(self.dcp.read_bytes()), 50721).ravel().tolist()
-        raw, recipe, out = (self.folder / f"chart.{kind}" for kind in ("dng", "pp3", "tif"))
+        raw, out = self.folder / "chart.dng", self.folder / "chart.tif"
         raw.write_bytes(dng(camera, rgb, neutral, color_matrix))
-        recipe.write_text(RECIPE.format(dcp=self.dcp, table=table))
-        command = ["rawtherapee-cli", "-Y", "-o", out, "-p", recipe, "-t", "-b16", "-c", raw]
-        subprocess.run(command, check=True, capture_output=True)
+        rawtherapee.develop(raw, out, f"file:{self.dcp}", table)
         found = developed(out)
         found *= wanted[:, 1].mean() / found[:, 1].mean()
         return chart.judge(f"{camera}, {what}", found, wanted, limit)
 
 
 if __name__ == "__main__":
-    chart.need("rawtherapee-cli", "rawtherapee")
-    chart.need("transicc", "liblcms2-utils")
+    for tool, package in rawtherapee.TOOLS.items():
+        chart.need(tool, package)
     good = True
     with tempfile.TemporaryDirectory() as name:
         bench = Bench(sys.argv[1], Path(name))

@@ -25,36 +25,10 @@ except ImportError as missing:
     print(f"skipped: {missing.name} is not installed (PyPI: numpy, tifffile)")
     sys.exit(0)
 
+import rawtherapee
+
 BLOCK, LIMIT = 16, 1.0
-OUTPUT = "/usr/share/rawtherapee/iccprofiles/output/RTv4_Large.icc"
 PROPHOTO = np.array([[0.7976749, 0.1351917, 0.0313534], [0.2880402, 0.7118741, 0.0000857], [0, 0, 0.8252100]])
-RECIPE = """[Version]
-AppVersion=5.9
-Version=349
-[Exposure]
-Auto=false
-HistogramMatching=false
-[HLRecovery]
-Enabled=false
-[White Balance]
-Enabled=true
-Setting=Camera
-[Color Management]
-InputProfile=(embedded)
-ToneCurve=false
-ApplyLookTable=false
-ApplyBaselineExposureOffset=false
-ApplyHueSatMap=true
-DCPIlluminant=0
-WorkingProfile=ProPhoto
-OutputProfile=RTv4_Large
-OutputProfileIntent=Relative
-OutputBPC=false
-[RAW]
-CA=false
-HotPixelFilter=false
-DeadPixelFilter=false
-"""
 
 
 def blocks(picture):
@@ -140,20 +114,14 @@ def specification(path, balanced):
     return np.stack([channel(5), channel(3), channel(1)], 1) @ PROPHOTO.T
 
 
-def rawtherapee(path, folder, wanted, good, size):
-    if not (shutil.which("rawtherapee-cli") and shutil.which("transicc")):
-        print("  skipped: rawtherapee-cli or transicc is not installed")
+def in_rawtherapee(path, folder, wanted, good, size):
+    if not all(map(shutil.which, rawtherapee.TOOLS)):
+        print(f"  skipped: not all of {', '.join(rawtherapee.TOOLS)} are installed")
         return True
-    recipe, out = folder / "rt.pp3", folder / "rt.tif"
-    recipe.write_text(RECIPE)
-    command = ["rawtherapee-cli", "-Y", "-o", out, "-p", recipe, "-t", "-b16", "-c", path]
-    subprocess.run(command, check=True, capture_output=True)
+    out = folder / "rt.tif"
+    rawtherapee.develop(path, out, "(embedded)")
     found = blocks(cut_to(tifffile.imread(out), size)) / 65535
-    lines = "".join(f"{r:.9g} {g:.9g} {b:.9g}\n" for r, g, b in 255 * found)
-    command = ["transicc", "-n", "-c0", "-t1", "-i", OUTPUT, "-o", "*XYZ"]
-    text = subprocess.run(command, input=lines, capture_output=True, text=True, check=True).stdout
-    xyz = np.array([[float(v) for v in line.split()] for line in text.split("\n") if line.strip()]) / 100
-    return judged("RawTherapee", xyz, wanted, good)
+    return judged("RawTherapee", rawtherapee.xyz(found), wanted, good)
 
 
 def darktable(path, folder, wanted, good, size):
@@ -190,7 +158,7 @@ def compared(program, raw_file, folder):
     right = sdk(dng, raw, multipliers)
     right &= libraw(dng, raw)
     right &= judged("the specification", specification(dng, light), wanted, good, limit=0.1)
-    right &= rawtherapee(dng, folder, wanted, good, raw.shape[:2])
+    right &= in_rawtherapee(dng, folder, wanted, good, raw.shape[:2])
     darktable(dng, folder, wanted, good, raw.shape[:2])
     return right
 

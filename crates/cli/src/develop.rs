@@ -69,10 +69,7 @@ impl Develop {
         let orders = self.files.iter().map(|file| Order::of(file, &mut layers, &target));
         let orders = orders.collect::<Result<Vec<Order>>>()?;
         let inputs: Vec<_> = self.files.iter().cloned().zip(orders.iter().map(|o| o.format)).collect();
-        let store = match ProfileStore::user_folder() {
-            Some(folder) => ProfileStore::with_user_folder(&folder),
-            None => ProfileStore::builtin(),
-        };
+        let store = ProfileStore::of_user();
         for fault in &store.faults {
             crate::say(format_args!("warning: {fault}; it is not used"));
         }

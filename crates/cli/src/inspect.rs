@@ -82,8 +82,7 @@ impl Inspect {
             });
         }
         let settings = Settings { decoder: self.decoder, ..Settings::default() };
-        let store = ProfileStore::user_folder()
-            .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
+        let store = ProfileStore::of_user();
         self.sandbox.confine(&reach)?;
         common.start_threads();
         let mut outcome = Outcome::Done;

@@ -11,7 +11,7 @@ use darkroot::ProfileStore;
 use darkroot_batch::{CrewOptions, system};
 use darkroot_window::{Options, Window};
 
-use crate::{Common, Outcome, batch};
+use crate::{Common, Outcome};
 
 /// Look at photographs in the browser: contact sheet, developing, charts, batches
 ///
@@ -41,7 +41,7 @@ impl Open {
         let program = std::env::current_exe().context("this program cannot find itself to start workers")?;
         let threads = common.threads.unwrap_or_else(system::threads).max(1);
         let crew = CrewOptions { jobs: threads, threads, ..CrewOptions::new(program, vec!["worker".into()]) };
-        let store = batch::store();
+        let store = ProfileStore::of_user();
         for fault in &store.faults {
             crate::say(format_args!("warning: {fault}; it is not used"));
         }

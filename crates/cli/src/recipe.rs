@@ -76,8 +76,7 @@ impl Recipe {
     /// One look for all files.
     fn look(&self) -> Result<Outcome> {
         let settings = self.picture.layers()?.for_folder(Path::new("."))?.settings()?;
-        let store = ProfileStore::user_folder()
-            .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
+        let store = ProfileStore::of_user();
         let found = darkroot::common_look(&self.files, &settings, &store)?;
         let Some(CommonLook { camera, look, told_by, without }) = found else {
             anyhow::bail!("no file has an embedded preview that tells of the camera's look");

@@ -1,7 +1,7 @@
 //! What of a photograph is brighter than white, for screens that show it.
 
 use darkroot_colour::{RgbSpace, white};
-use darkroot_develop::{Bits, Output, OutputSpace, Recipe};
+use darkroot_develop::{Bits, Output, OutputSpace, Recipe, Tones};
 use darkroot_encode::GainMap;
 use darkroot_encode::gain_map::OFFSET;
 use darkroot_photo::{Picture, PictureSpace, Samples};
@@ -19,10 +19,7 @@ pub(crate) fn peak(stops: f32) -> f64 {
 
 /// The recipe of a picture in absolute light: linear, in Rec. 2020, 1 for [`peak`].
 pub(crate) fn absolute(recipe: &Recipe, stops: f32) -> Recipe {
-    let output = Output { space: OutputSpace::Rgb(RgbSpace::REC2020.linear()), bits: Bits::Float };
-    let mut recipe = Recipe { output, ..recipe.clone() };
-    recipe.tones.headroom = stops;
-    recipe
+    in_light(recipe, OutputSpace::Rgb(RgbSpace::REC2020.linear()), stops)
 }
 
 /// Halvings from the picture to its gain map: a quarter of its width and height.
@@ -36,11 +33,13 @@ pub(crate) fn recipes(recipe: &Recipe, stops: f32) -> [Recipe; 2] {
         OutputSpace::Rgb(space) => OutputSpace::Rgb(space.linear()),
         other => other,
     };
-    [0.0, stops].map(|headroom| {
-        let mut recipe = Recipe { output: Output { space, bits: Bits::Float }, ..recipe.clone() };
-        recipe.tones.headroom = headroom;
-        recipe
-    })
+    [0.0, stops].map(|headroom| in_light(recipe, space, headroom))
+}
+
+/// A recipe of floating-point samples in a linear space, with room above white.
+fn in_light(recipe: &Recipe, space: OutputSpace, headroom: f32) -> Recipe {
+    let tones = Tones { headroom, ..recipe.tones };
+    Recipe { tones, output: Output { space, bits: Bits::Float }, ..recipe.clone() }
 }
 
 /// The gain map of a picture, of views of both recipes; `None` where nothing is brighter than white.

@@ -160,6 +160,11 @@ impl ProfileStore {
         store.with_builtin()
     }
 
+    /// The profiles of the user's folder, where there is one, and the built-in ones.
+    pub fn of_user() -> Self {
+        Self::user_folder().map_or_else(Self::builtin, |folder| Self::with_user_folder(&folder))
+    }
+
     /// The user's profile folder: `darkroot/profiles` in the XDG data folder (`XDG_DATA_HOME`, else
     /// `~/.local/share`). `None` where there is no home.
     pub fn user_folder() -> Option<PathBuf> {

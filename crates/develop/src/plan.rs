@@ -133,8 +133,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let as_it_is = measuring || reproduced;
     let usual_sharpening = if as_it_is || raw_output { 0.0 } else { 1.0 };
     let sharpening = recipe.sharpen.unwrap_or(usual_sharpening);
-    let geometry = Geometry { sharpening, ..recipe.geometry };
-    let laid = lay(capture, recipe.crop, &geometry, measuring)?;
+    let laid = lay(capture, recipe.crop, &recipe.geometry, measuring, sharpening)?;
     let mut notes = Vec::new();
     let whites = whites(analysis, profile);
     let neutral = neutral::neutral(analysis, &whites, recipe.balance, &laid, &mut notes)?;

@@ -78,6 +78,7 @@ mod jxl;
 mod output;
 mod png;
 mod tiff;
+mod tiff_entries;
 mod webp;
 
 #[cfg(test)]

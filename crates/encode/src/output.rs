@@ -70,3 +70,16 @@ pub(crate) fn buffered(
         None => result,
     }
 }
+
+/// Writes over places that were left for it, each so many bytes from the output's beginning, and goes back to the end.
+pub(crate) fn fill(out: &mut (impl Write + Seek), places: &[(u64, &[u8])]) -> Result<(), Error> {
+    let mut filled = || {
+        let end = out.stream_position()?;
+        for (place, bytes) in places {
+            out.seek(SeekFrom::Start(*place))?;
+            out.write_all(bytes)?;
+        }
+        out.seek(SeekFrom::Start(end)).map(drop)
+    };
+    filled().map_err(Error::Io)
+}

@@ -2,32 +2,27 @@
 
 use std::io::{Seek, Write};
 
-use darkroot_photo::metadata::{Directory, Value, tag};
+use darkroot_photo::metadata::Directory;
 use darkroot_photo::{Metadata, PictureSpace, Size};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use tiff::decoder::ifd::Entry;
 use tiff::encoder::{
     DirectoryEncoder, Predictor, Rational, TiffEncoder, TiffKind, TiffKindBig, TiffKindStandard,
 };
 use tiff::tags::{CompressionMethod, PhotometricInterpretation, ResolutionUnit, SampleFormat, Tag, Type};
-use tiff::{Directory as Entries, TiffError, TiffResult};
+use tiff::{TiffError, TiffResult};
 
 use crate::bands::{self, MakeBands, Outline, Sink};
 use crate::format::profile_of;
 use crate::output::Buffered;
-use crate::{Error, Format, Options, Sample, TiffCompression, exif};
+use crate::tiff_entries::{EVEN, closed, shot_directories, write_bytes, write_fields};
+use crate::{Error, Format, Options, Sample, TiffCompression};
 
 const IMAGE_DESCRIPTION: u16 = 0x010e;
-const EXIF_DIRECTORY: u16 = 0x8769;
-const GPS_DIRECTORY: u16 = 0x8825;
 const ICC_PROFILE: u16 = 0x8773;
 
 /// Level of deflate; see PNG's.
 const LEVEL: u32 = 1;
-
-/// What stands in the file begins at even places (TIFF 6.0, section 2).
-const EVEN: usize = 2;
 
 /// Rows of a band, and of each of the strips that it becomes.
 const BAND_ROWS: usize = 192;
@@ -125,22 +120,6 @@ fn begun<'a, W: Write + Seek, K: TiffKind>(
     Ok(entries)
 }
 
-/// Writes the fields of the shot that have directories of their own; what points at each, and where it is.
-pub(crate) fn shot_directories<W: Write + Seek, K: TiffKind>(
-    file: &mut TiffEncoder<W, K>,
-    metadata: &Metadata,
-) -> TiffResult<Vec<(u16, K::OffsetType)>> {
-    let mut pointers = Vec::new();
-    for (directory, pointer) in [(Directory::Exif, EXIF_DIRECTORY), (Directory::Gps, GPS_DIRECTORY)] {
-        if exif::fields(metadata).any(|field| field.directory == directory) {
-            let mut entries = file.extra_directory()?;
-            write_fields(&mut entries, metadata, directory)?;
-            pointers.push((pointer, entries.finish_with_offsets()?.offset));
-        }
-    }
-    Ok(pointers)
-}
-
 /// The bytes of a strip, in the order of the machine, which is that of the file.
 fn coded<T: Sample>(samples: &[T], width: usize, compression: TiffCompression) -> Result<Vec<u8>, Error> {
     match compression {
@@ -200,61 +179,6 @@ fn description_of_camera_rgb(metadata: &Metadata) -> String {
     }
 }
 
-/// Writes the fields of a directory.
-pub(crate) fn write_fields<W: Write + Seek, K: TiffKind>(
-    entries: &mut DirectoryEncoder<'_, W, K>,
-    metadata: &Metadata,
-    directory: Directory,
-) -> Result<(), TiffError> {
-    for field in exif::fields(metadata).filter(|field| field.directory == directory) {
-        let (kind, bytes) = match &field.value {
-            Value::Text(text) => (Type::ASCII, closed(text)),
-            Value::Bytes(v) => (Type::BYTE, v.clone()),
-            Value::Undefined(v) => (Type::UNDEFINED, v.clone()),
-            Value::Shorts(v) => (Type::SHORT, v.iter().flat_map(|n| n.to_ne_bytes()).collect()),
-            Value::Longs(v) => (Type::LONG, v.iter().flat_map(|n| n.to_ne_bytes()).collect()),
-            Value::Rationals(v) => {
-                (Type::RATIONAL, v.iter().flat_map(|&(n, d)| [n, d]).flat_map(u32::to_ne_bytes).collect())
-            }
-            Value::SignedRationals(v) => {
-                (Type::SRATIONAL, v.iter().flat_map(|&(n, d)| [n, d]).flat_map(i32::to_ne_bytes).collect())
-            }
-        };
-        let (kind, bytes) = match (field.directory, field.tag) {
-            (Directory::Image, tag::IPTC) => as_longs(bytes),
-            _ => (kind, bytes),
-        };
-        write_bytes(entries, field.tag, kind, &bytes)?;
-    }
-    Ok(())
-}
-
-/// A block of IPTC as Adobe and those after it store it: as if it were numbers of 32 bits.
-fn as_longs(mut block: Vec<u8>) -> (Type, Vec<u8>) {
-    block.resize(block.len().next_multiple_of(size_of::<u32>()), 0);
-    (Type::LONG, block)
-}
-
-/// Writes a value in the byte order of the machine, which is that of the file.
-pub(crate) fn write_bytes<W: Write + Seek, K: TiffKind>(
-    entries: &mut DirectoryEncoder<'_, W, K>,
-    tag: u16,
-    kind: Type,
-    bytes: &[u8],
-) -> Result<(), TiffError> {
-    let entry: Entry = entries.write_entry_bytes(kind, bytes)?;
-    if bytes.len() > size_of::<K::OffsetType>() && !bytes.len().is_multiple_of(EVEN) {
-        entries.write_data(&[0_u8][..])?;
-    }
-    entries.extend_from(&Entries::from_iter([(Tag::from_u16_exhaustive(tag), entry)]));
-    Ok(())
-}
-
-/// Text with its closing zero.
-pub(crate) fn closed(text: &str) -> Vec<u8> {
-    text.bytes().chain([0]).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Cursor;
@@ -262,8 +186,10 @@ mod tests {
     use super::*;
     use crate::bands::TakeBand;
     use crate::testing::{assert_lossless, decoded, encoded, metadata, picture};
+    use crate::tiff_entries::EXIF_DIRECTORY;
     use darkroot_colour::RgbSpace;
     use darkroot_photo::Samples;
+    use darkroot_photo::metadata::{Value, tag};
     use tiff::decoder::Decoder;
 
     const SRGB: PictureSpace = PictureSpace::Rgb(RgbSpace::SRGB);

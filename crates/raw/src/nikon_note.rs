@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::tiff::{Directories, EXIF_IFD};
 
-const MAKER_NOTE: u16 = 0x927c;
+pub(crate) const MAKER_NOTE: u16 = 0x927c;
 /// "Nikon", a zero, a version: a TIFF structure of its own follows.
 const HEAD: usize = 10;
 /// 1 is sRGB, 2 Adobe RGB.
@@ -17,7 +17,11 @@ const COMPRESSION_IN_FACTS: usize = 10;
 /// The note's directories; `None` where there is none.
 fn note<'a>(tiff: &Directories<'a>) -> Option<Directories<'a>> {
     let exif = tiff.below(tiff.all.first()?, EXIF_IFD)?;
-    let note = tiff.value(exif.entries.iter().find(|e| e.tag == MAKER_NOTE)?, usize::MAX)?;
+    inside(tiff.value(exif.entries.iter().find(|e| e.tag == MAKER_NOTE)?, usize::MAX)?)
+}
+
+/// The directories inside of a note of this type; `None` for any other.
+pub(crate) fn inside(note: &[u8]) -> Option<Directories<'_>> {
     let inside = note.starts_with(b"Nikon\0").then(|| note.get(HEAD..)).flatten()?;
     Directories::walk(inside).ok().flatten()
 }

@@ -10,11 +10,12 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
+use darkroot::ProfileStore;
 use darkroot_batch::{
     Batch as Run, BatchPlan, Event, Experience, Session, SettingsByFile, Sheet, State, Summary, find, journal,
 };
 
-pub(crate) use options::{Work, store};
+pub(crate) use options::Work;
 pub(crate) use shown::Shown;
 pub(crate) use watch::Watch;
 pub(crate) use worker::Worker;
@@ -74,7 +75,7 @@ impl Batch {
         options.verify = self.verify;
         let crew = work.crew(common)?;
         let jobs = crew.jobs;
-        let store = store();
+        let store = ProfileStore::of_user();
         let mut shown = Shown::new(common, self.json);
         for fault in &store.faults {
             shown.warn(&format!("{fault}; it is not used"));

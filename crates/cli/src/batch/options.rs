@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use darkroot::{ProfileStore, path_text};
+use darkroot::path_text;
 use darkroot_batch::{
     ChartShot, CrewOptions, OnCollision, PlanOptions, Search, Shard, Wording, Workers, names, system,
 };
@@ -163,14 +163,6 @@ impl Work {
             timeout: self.timeout,
             wording: Wording::new(crate::hint::words),
         })
-    }
-}
-
-/// The user's profiles and the built-in ones.
-pub(crate) fn store() -> ProfileStore {
-    match ProfileStore::user_folder() {
-        Some(folder) => ProfileStore::with_user_folder(&folder),
-        None => ProfileStore::builtin(),
     }
 }
 

@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use anyhow::{Error, Result};
 use clap::Args;
+use darkroot::ProfileStore;
 use darkroot_batch::{Batch, Notice, SettingsByFile, Stop, WatchOptions, Watched, watch};
 use serde_json::json;
 
-use super::options::{Work, store};
+use super::options::Work;
 use super::shown::Shown;
 use crate::values;
 use crate::{Common, Outcome, interrupt};
@@ -53,7 +54,7 @@ impl Watch {
             poll: self.poll,
             chart: work.chart_shot()?,
         };
-        let store = store();
+        let store = ProfileStore::of_user();
         let shown = Shown::new(common, self.json).without_bar();
         for fault in &store.faults {
             shown.warn(&format!("{fault}; it is not used"));

@@ -20,7 +20,13 @@ impl Worker {
     pub(crate) fn run(self) -> Result<Outcome> {
         // Faults of profiles were told by the parent.
         let (orders, answers) = (BufReader::new(stdin()), stdout().lock());
-        darkroot_batch::serve(orders, answers, &super::store(), &crate::hint::words, self.sandbox.is_on())?;
+        darkroot_batch::serve(
+            orders,
+            answers,
+            &darkroot::ProfileStore::of_user(),
+            &crate::hint::words,
+            self.sandbox.is_on(),
+        )?;
         Ok(Outcome::Done)
     }
 }

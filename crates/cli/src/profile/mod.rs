@@ -62,8 +62,7 @@ impl Profile {
 
 /// The user's profiles and those built in; profile files that cannot be used are said.
 pub(crate) fn store() -> ProfileStore {
-    let store = ProfileStore::user_folder()
-        .map_or_else(ProfileStore::builtin, |folder| ProfileStore::with_user_folder(&folder));
+    let store = ProfileStore::of_user();
     for fault in &store.faults {
         crate::say(format_args!("warning: {fault}"));
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use darkroot_develop::{Cancel, Cancelled, Plan, Recipe, Scale};
+use darkroot_develop::{Cancel, Cancelled, Kept, Plan, Recipe, Scale};
 use darkroot_encode::{Format, Options};
 use darkroot_photo::{Capture, Picture};
 
@@ -24,20 +24,37 @@ pub(super) struct Beside<'a> {
 }
 
 impl Beside<'_> {
-    /// The encoder's options, with all that the file holds beside the picture.
-    pub(super) fn options(&self, mut options: Options, notes: &mut Vec<String>) -> Result<Options, Error> {
+    /// The encoder's options, with all that the file holds beside the picture. Where that is nothing for a screen, `seen` gets a
+    /// small one in its place.
+    pub(super) fn options(
+        &self,
+        mut options: Options,
+        seen: &mut Option<&mut dyn FnMut(&Picture)>,
+        notes: &mut Vec<String>,
+    ) -> Result<Options, Error> {
+        let stops = self.settings.hdr;
+        let is_absolute = stops > 0.0 && self.format == Format::Avif;
         if self.format == Format::Dng {
-            let facts = dng::facts(self.input, self.capture, self.plan, self.look()?);
+            let look = self.look()?;
+            if let Some(seen) = seen.take() {
+                seen(&look);
+            }
+            let facts = dng::facts(self.input, self.capture, self.plan, look);
             let dng = facts.map_err(|source| Error::Dng { path: self.input.to_owned(), source })?;
             options.dng = Arc::new(dng);
         }
-        let stops = self.settings.hdr;
-        if stops > 0.0 && self.format == Format::Avif {
+        if is_absolute {
+            if let Some(seen) = seen.take() {
+                seen(&self.look()?);
+            }
             options.peak = Some(hdr::peak(stops));
         } else if stops > 0.0 {
+            // Both are made of the same light of the camera.
+            let kept = Kept::default();
+            let scale = Scale::halved(hdr::HALVINGS).unwrap_or(Scale::FULL);
             let [shown, brighter] = hdr::recipes(self.asked, stops).map(|recipe| {
                 let plan = (self.planned)(&recipe)?;
-                self.view(&plan, Scale::halved(hdr::HALVINGS).unwrap_or(Scale::FULL))
+                self.made(plan.render_again(plan.whole(scale), &kept, self.cancel))
             });
             options.gain_map = hdr::gain_map([&shown?, &brighter?], stops).map(Arc::new);
             if options.gain_map.is_none() {
@@ -47,19 +64,14 @@ impl Beside<'_> {
         Ok(options)
     }
 
-    /// Whether the picture's samples are light of the sensor or absolute light.
-    pub(super) fn is_for_no_screen(&self) -> bool {
-        self.format == Format::Dng || self.format == Format::Avif && self.settings.hdr > 0.0
-    }
-
     /// A small picture in sRGB, with the look that was asked for.
-    pub(super) fn look(&self) -> Result<Picture, Error> {
+    fn look(&self) -> Result<Picture, Error> {
         let shown = (self.planned)(&dng::shown(self.asked))?;
-        self.view(&shown, Scale::to_show(shown.size(), dng::PREVIEW))
+        let view = shown.whole(Scale::to_show(shown.size(), dng::PREVIEW));
+        self.made(shown.render(view, self.cancel))
     }
 
-    fn view(&self, plan: &Plan, scale: Scale) -> Result<Picture, Error> {
-        plan.render(plan.whole(scale), self.cancel)
-            .map_err(|Cancelled| Error::Cancelled { path: self.input.to_owned() })
+    fn made(&self, picture: Result<Picture, Cancelled>) -> Result<Picture, Error> {
+        picture.map_err(|Cancelled| Error::Cancelled { path: self.input.to_owned() })
     }
 }

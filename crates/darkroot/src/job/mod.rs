@@ -138,10 +138,7 @@ pub fn develop_into(
                 planned: &|recipe| Ok(plan_of(recipe)?.0),
                 cancel,
             };
-            encode = beside.options(encode, &mut notes)?;
-            if let Some(seen) = control.seen.take_if(|_| beside.is_for_no_screen()) {
-                seen(&beside.look()?);
-            }
+            encode = beside.options(encode, &mut control.seen, &mut notes)?;
             let by_chart = told.as_ref().zip(settings.chart.pitch).map(|(told, pitch)| told.dpi(pitch));
             let dpi = settings.dpi.or(by_chart);
             let mut origin = Vec::new();

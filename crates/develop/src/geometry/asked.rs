@@ -54,8 +54,6 @@ pub struct Geometry {
     pub keep_fringes: bool,
     /// Size of the picture.
     pub resize: Resize,
-    /// How much a picture is sharpened that is made smaller, 0..=2; the plan sets it.
-    pub sharpening: f32,
     /// Whether `resize` may make it larger than it is.
     pub enlarge: bool,
 }

@@ -61,11 +61,18 @@ impl Laid {
     }
 }
 
-/// Lays a picture into the frame. Nobody who measures gets the file's correction of the lens unasked.
+/// Lays a picture into the frame. Nobody who measures gets the file's correction of the lens unasked. A picture that is made
+/// smaller is sharpened by so much, 0..=2.
 ///
 /// # Errors
 /// A crop, corners or a size that cannot be.
-pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bool) -> Result<Laid, Error> {
+pub(crate) fn lay(
+    capture: &Capture,
+    crop: Crop,
+    asked: &Geometry,
+    measuring: bool,
+    sharpening: f32,
+) -> Result<Laid, Error> {
     let shown = match crop {
         Crop::Active => capture.active_area,
         Crop::Default => capture.shown(),
@@ -109,7 +116,7 @@ pub(crate) fn lay(capture: &Capture, crop: Crop, asked: &Geometry, measuring: bo
         * to_canvas
         * moved(part.x, part.y)
         * scaled(across, down);
-    let warp = Warp::new(to_frame, lens, area.size(), zoom * across.max(down), asked.sharpening);
+    let warp = Warp::new(to_frame, lens, area.size(), zoom * across.max(down), sharpening);
     Ok(Laid { size, crop: shown, orientation, warp: Some(warp), vignetting })
 }
 

@@ -9,7 +9,7 @@ use tiff::TiffResult;
 use tiff::tags::Type;
 
 use super::{Entries, fractions, put, signed_fractions, tag};
-use crate::tiff::{closed, write_bytes};
+use crate::tiff_entries::{closed, write_bytes};
 
 /// What a DNG states beside its samples and the fields of the shot.
 #[derive(Debug, Clone, PartialEq, Default)]

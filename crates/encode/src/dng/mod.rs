@@ -19,7 +19,7 @@ use tiff::{TiffError, TiffResult};
 use crate::bands::{self, MakeBands, Outline};
 use crate::output::Buffered;
 use crate::sample::Sample;
-use crate::tiff::{shot_directories, write_bytes, write_fields};
+use crate::tiff_entries::{shot_directories, write_bytes, write_fields};
 use crate::{Error, Format, Options};
 
 pub use facts::{CameraColours, Dng, HueSatTable};

@@ -8,7 +8,7 @@ use tiff::encoder::{Rational, TiffEncoder, TiffKindStandard};
 use tiff::tags::{PhotometricInterpretation, Tag, Type};
 
 use super::{Entries, put, tag, value};
-use crate::tiff::{closed, write_bytes};
+use crate::tiff_entries::{closed, write_bytes};
 use crate::{Error, Format, Options};
 
 /// Longest side of the small picture, pixels: what the DNG specification proposes.

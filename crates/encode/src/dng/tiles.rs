@@ -7,6 +7,7 @@ use tiff::tags::Tag;
 
 use super::{Entries, error};
 use crate::bands::Sink;
+use crate::tiff_entries::EVEN;
 use crate::{Error, ljpeg};
 
 /// Side of a tile, pixels; a multiple of 16 (TIFF 6.0, section 15).
@@ -62,8 +63,7 @@ impl<W: Write + Seek + Send> Sink for Tiles<'_, W> {
     fn put(&mut self, coded: Self::Coded) -> Result<(), Error> {
         for mut tile in coded {
             let length = tile.len() as u32;
-            // Offsets are even (TIFF 6.0, section 2).
-            tile.resize(tile.len().next_multiple_of(2), 0);
+            tile.resize(tile.len().next_multiple_of(EVEN), 0);
             let offset = self.entries.write_data(&tile[..]).map_err(error)?;
             self.offsets.push(u32::try_from(offset).map_err(|e| error(e.into()))?);
             self.lengths.push(length);

@@ -5,12 +5,12 @@
 //! take. Libraries were looked at: ultrahdr-core is young, changes its interface and has a licence that does not fit; libultrahdr is
 //! C++ with a JPEG encoder of its own.
 
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Seek, Write};
 
 use darkroot_photo::Size;
 use jpeg_encoder::{ColorType, Encoder, EncodingError};
 
-use crate::output::Buffered;
+use crate::output::{Buffered, fill};
 use crate::{Error, Format};
 
 /// How much brighter a picture is where there is room above white.
@@ -143,18 +143,13 @@ pub(super) fn settle(
     second: &[u8],
     out: &mut Buffered<'_, '_>,
 ) -> Result<(), Error> {
-    let mut settle = || -> std::io::Result<()> {
-        let first = out.stream_position()? - start;
-        out.write_all(second)?;
-        let end = out.stream_position()?;
-        if let Some(at) = header.windows(MPF.len()).rposition(|w| w == MPF).map(|at| at + MPF.len()) {
-            let place = first as u32 - at as u32;
-            out.seek(SeekFrom::Start(start + at as u64))?;
-            out.write_all(&directory([first as u32, second.len() as u32, place]))?;
-        }
-        out.seek(SeekFrom::Start(end)).map(drop)
+    let first = out.stream_position().map_err(Error::Io)? - start;
+    out.write_all(second).map_err(Error::Io)?;
+    let Some(at) = header.windows(MPF.len()).rposition(|w| w == MPF).map(|at| at + MPF.len()) else {
+        return Ok(());
     };
-    settle().map_err(Error::Io)
+    let sizes = [first as u32, second.len() as u32, first as u32 - at as u32];
+    fill(out, &[(start + at as u64, &directory(sizes))])
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A small picture inside of Exif, for programs that list files (Exif 2.32, 4.5.5). It is made of the bands as they come; a
 //! place is left for it before, and filled at the end.
 
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Seek, Write};
 use std::sync::{Mutex, PoisonError};
 
 use darkroot_colour::RgbSpace;
@@ -10,6 +10,7 @@ use darkroot_photo::{PictureSpace, Size};
 use super::header::{END, Header};
 use super::units::{Scan, Subsampling};
 use crate::format::same_colours;
+use crate::output::fill;
 use crate::{ChromaSubsampling, Error};
 
 /// Pixels of its longest side.
@@ -105,12 +106,7 @@ impl Thumbnail {
         let places = (find(MARK), find(&length));
         let (Some(jpeg), (Some(place), Some(length))) = (self.jpeg(), places) else { return Ok(()) };
         let number = (jpeg.len() as u32).to_le_bytes();
-        let end = out.stream_position().map_err(Error::Io)?;
-        for (at, bytes) in [(place, &jpeg[..]), (length + 8, &number)] {
-            out.seek(SeekFrom::Start(start + at as u64)).map_err(Error::Io)?;
-            out.write_all(bytes).map_err(Error::Io)?;
-        }
-        out.seek(SeekFrom::Start(end)).map(drop).map_err(Error::Io)
+        fill(out, &[(start + place as u64, &jpeg), (start + length as u64 + 8, &number)])
     }
 }
 

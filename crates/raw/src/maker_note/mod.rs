@@ -5,9 +5,9 @@
 
 use darkroot_photo::metadata::{Directory as Place, Metadata, Value, tag};
 
+use crate::nikon_note::{self, MAKER_NOTE};
 use crate::tiff::{Directories, Directory, EXIF_IFD};
 
-const MAKER_NOTE: u16 = 0x927c;
 /// DNG: what converters keep of the file that they converted.
 const PRIVATE_DATA: u16 = 0xc634;
 
@@ -93,7 +93,7 @@ fn fields(note: &Note<'_>, make: &str) -> Option<Vec<(u16, Value)>> {
     if make.starts_with("nikon") {
         let (tiff, directory) = match head.starts_with(b"Nikon\0") {
             true => {
-                let tiff = Directories::walk(head.get(10..)?).ok()??;
+                let tiff = nikon_note::inside(head)?;
                 let first = tiff.all.first()?.clone();
                 (tiff, first)
             }
@@ -111,17 +111,17 @@ fn fields(note: &Note<'_>, make: &str) -> Option<Vec<(u16, Value)>> {
         };
         return Some(olympus(&tiff, &directory));
     }
-    let (tiff, directory) = match make {
-        make if make.starts_with("canon") => of_file(0)?,
-        make if make.starts_with("panasonic") && head.starts_with(b"Panasonic\0") => of_file(12)?,
-        make if make.starts_with("sony") => of_file(if head.starts_with(b"SONY ") { 12 } else { 0 })?,
+    let (start, texts): (usize, &[(u16, u16)]) = match make {
+        make if make.starts_with("canon") => (0, &[(0x0095, tag::LENS_MODEL)]),
+        make if make.starts_with("panasonic") && head.starts_with(b"Panasonic\0") => {
+            (12, &[(0x0051, tag::LENS_MODEL), (0x0052, LENS)])
+        }
+        make if make.starts_with("sony") => {
+            (if head.starts_with(b"SONY ") { 12 } else { 0 }, &[(0x2031, BODY)])
+        }
         _ => return None,
     };
-    let texts: &[(u16, u16)] = match make {
-        make if make.starts_with("canon") => &[(0x0095, tag::LENS_MODEL)],
-        make if make.starts_with("panasonic") => &[(0x0051, tag::LENS_MODEL), (0x0052, LENS)],
-        _ => &[(0x2031, BODY)],
-    };
+    let (tiff, directory) = of_file(start)?;
     let mut known = texts_of(&tiff, &directory, texts);
     if make.starts_with("canon") {
         // A number, shown with ten digits as it stands on the camera.
