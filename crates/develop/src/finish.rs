@@ -69,15 +69,16 @@ impl<T: Sample> Finish<T> {
 }
 
 /// All stages of one pixel but the last.
-fn stages(mut camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
-    highlights::neutralise(&mut camera, &plan.base.highlights);
+fn stages(camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     let Some(model) = &plan.model else {
         if plan.space == OutputSpace::Raw {
             return balance::undo(camera, plan.base.multipliers).into_space();
         }
         return exposure::expose(camera.into_space::<Scene>(), plan.gain).into_space();
     };
-    let scene = correct::correct(exposure::darken(camera, plan.veil), model);
+    let whitening = highlights::Whitening::of(&camera, &plan.base.highlights);
+    let mut scene = correct::correct(exposure::darken(camera, plan.veil), model);
+    highlights::whiten(&mut scene, &whitening);
     let scene = exposure::expose(scene, plan.gain);
     let primaries = &plan.primaries;
     let shown = |scene, curve| {

@@ -5,7 +5,7 @@
 //! clipped, and from the colour that the picture has where it is not (`clipped_colours.rs`): as strong as those channels
 //! say where two of them are left, and with their light where one is. Clipped samples lie on the bright side of an edge,
 //! so bright samples around them tell more than dark ones. While the last channel goes towards its limit, the result
-//! becomes neutral; where every channel is clipped there is nothing left to estimate from.
+//! becomes neutral (`whiten.rs`); where every channel is clipped there is nothing left to estimate from.
 //!
 //! Nothing switches: how far a sample is trusted, and how neutral the result is, are smooth functions of the light.
 
@@ -13,10 +13,13 @@ use std::array::from_fn;
 use std::sync::Arc;
 
 use darkroot_colour::simd::vectorised;
-use darkroot_photo::{CameraSpace, Cfa, Layout, Mosaic, Rgb};
+use darkroot_photo::{Cfa, Layout, Mosaic};
 
 use crate::clipped_colours::ClippedColours;
 use crate::stage::{Stage, WhenSmaller};
+
+mod whiten;
+pub use whiten::{Whitening, whiten};
 
 /// Pixels around a sample that rebuilding looks at.
 pub const BORDER: usize = 2;
@@ -30,9 +33,6 @@ pub const CLIPPED: f32 = 0.985;
 const TRUSTED: f32 = 0.93;
 /// Samples that are looked at together, as most of them are not clipped.
 const RUN: usize = 64;
-/// Share of its limit from which on a last channel makes the colour neutral, at most: less where channels clip far
-/// apart, for which there is more room then.
-const NEARLY: f32 = 0.8;
 /// Difference of two channels beyond what a clipped one allows that excludes a colour.
 const EXCLUDED: f32 = 0.2;
 /// How much stronger a colour may be than that of the picture around.
@@ -41,7 +41,7 @@ const STRONGEST: f32 = 2.0;
 const TOLD: f32 = 0.7;
 /// How much more light clipped channels may tell of than the trusted ones do.
 const BEYOND: f32 = 3.0;
-/// Shares of its limit between which a last channel ends: what is rebuilt from it becomes neutral before (`neutralise`).
+/// Shares of its limit between which a last channel ends: what is rebuilt from it becomes neutral before (`whiten.rs`).
 const ENDED: (f32, f32) = (0.96, 1.0);
 /// Weight of samples that are not trusted, beside 1, where none is trusted entirely.
 const GUESS: f32 = 0.02;
@@ -248,15 +248,6 @@ pub(crate) fn rebuilt(seen: [f32; 3], limits: [f32; 3], colour: [f32; 3]) -> [f3
     from_fn(|c| estimates[c] + (white - estimates[c]) * neutral * (1.0 - trust[c]))
 }
 
-/// Between a value and white: half by their difference, half by that of their inverses. By the first alone dark channels of
-/// a strong colour rise too early, by the second too late.
-#[inline(always)]
-fn towards(v: f32, white: f32, share: f32) -> f32 {
-    let even = v + (white - v) * share;
-    let inverse = (1.0 - share) / v.max(f32::MIN_POSITIVE) + share / white.max(f32::MIN_POSITIVE);
-    if share > 0.0 { 0.5 * (even + 1.0 / inverse) } else { v }
-}
-
 /// A colour (mean 1) of the hue of `colour`, as strong as the channels say: two trusted ones by their difference, one beside
 /// a clipped one by what it excludes.
 fn as_strong_as(seen: [f32; 3], trust: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
@@ -275,16 +266,6 @@ fn as_strong_as(seen: [f32; 3], trust: [f32; 3], colour: [f32; 3]) -> [f32; 3] {
     colour.map(|v| (1.0 + (v - 1.0) * strength).max(0.05))
 }
 
-/// How neutral to make a colour whose channels, rebuilt, have these shares of their limits: 0 as long as none is clipped, 1
-/// when all are. In between there is as much room as between the first and the last channel's clipping.
-#[inline(always)]
-fn neutrality(shares: [f32; 3]) -> f32 {
-    let (least, most) = (least(shares), most(shares));
-    let begin = (least / most.max(TRUSTED)).clamp(0.05, NEARLY);
-    let t = ((least - begin) / (CLIPPED - begin)).clamp(0.0, 1.0);
-    t * t * (2.0 - t) * smooth(most, TRUSTED, CLIPPED)
-}
-
 /// 0 up to one value, 1 from another one on, smooth between them.
 #[inline(always)]
 fn smooth(v: f32, from: f32, to: f32) -> f32 {
@@ -300,33 +281,6 @@ fn most(v: [f32; 3]) -> f32 {
 #[inline(always)]
 fn least(v: [f32; 3]) -> f32 {
     v[0].min(v[1]).min(v[2])
-}
-
-/// Makes a rebuilt picture neutral where its last channel goes towards its limit. Corrections that make limits differ from
-/// place to place leave nothing to compare with here.
-pub fn neutralise(picture: &mut Rgb<CameraSpace>, treatment: &Treatment) {
-    let Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) = treatment else { return };
-    let [r, g, b] = picture.planes_mut();
-    let scale = limits.map(|l| 1.0 / l);
-    for ((r, g), b) in r.chunks_mut(RUN).zip(g.chunks_mut(RUN)).zip(b.chunks_mut(RUN)) {
-        let is_bright = |plane: &[f32], c: usize| reaches(plane, TRUSTED * limits[c]);
-        if !is_bright(r, 0) && !is_bright(g, 1) && !is_bright(b, 2) {
-            continue;
-        }
-        vectorised(
-            #[inline(always)]
-            || {
-                for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {
-                    let weight = neutrality([*r * scale[0], *g * scale[1], *b * scale[2]]);
-                    // The brightest channel is the best guess of how bright the surface is at least.
-                    let white = r.max(*g).max(*b);
-                    *r = towards(*r, white, weight);
-                    *g = towards(*g, white, weight);
-                    *b = towards(*b, white, weight);
-                }
-            },
-        );
-    }
 }
 
 #[cfg(test)]

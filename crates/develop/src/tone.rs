@@ -4,9 +4,9 @@
 //! f(x) = (1 + k) x^p / (x^p + k), so that 0 stays 0 and the level at which the sensor clips, 1, becomes white.
 //! p sets the contrast of the middle tones, k how they are lifted. It is applied to the largest and the smallest of R, G and
 //! B. Between them lies the grey of the colour's lightness, and how far its brightness and its chroma go, follows: bright
-//! colours run to white, and where nothing is in the smallest channel a colour stays pure. Chroma then changes along the
-//! line of one hue of Oklab (`cones.rs`), not of R, G and B, in which blue turns purple and orange yellow on their way to
-//! white.
+//! colours run to white, and where hardly anything is in the smallest channel a colour stays pure until it is brighter than
+//! white. Chroma then changes along the line of one hue of Oklab (`cones.rs`), not of R, G and B, in which blue turns purple
+//! and orange yellow on their way to white.
 
 use darkroot_colour::RgbSpace;
 use darkroot_colour::simd::vectorised;
@@ -51,6 +51,9 @@ struct Base {
     k: f32,
 }
 
+/// How much light of its brightest channel a colour's darkest one gets: strong colours that are brighter than white go to
+/// white as light grows, as on film, instead of standing still at what a display can show. Dark ones, blue first, wait longer.
+const WHITER: f32 = 0.05;
 /// Scene light of a grey card as cameras meter it: 12.7 % of the clipping level (ISO 12232).
 const METERED_GREY: f64 = 0.127;
 /// Brighter scene light counts as this.
@@ -106,12 +109,12 @@ impl Colours {
         // Light below 0, of colours beyond Rec. 2020 and of noise, ends where light does; responses to it say more.
         let high = greater(greater(greater(scene[0], scene[1]), scene[2]), 0.0);
         let low = greater(lesser(lesser(scene[0], scene[1]), scene[2]), 0.0);
-        let (to_high, to_low) = (curve.light(high), curve.light(low));
-        // Grey has no span: it becomes `to_low`.
-        let span = high - low;
-        let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
         let seen = cones::times(self.to_cones, scene).map(|v| greater(v, 0.0));
         let grey = greater(cones::grey(seen), DARKEST);
+        // Grey has no span: it becomes `to_low`.
+        let span = high - low;
+        let (to_high, to_low) = (curve.light(high), curve.light(low + WHITER * high * grey.sqrt() * span));
+        let slope = if span > 0.0 { (to_high - to_low) / span } else { 0.0 };
         let shown = greater(to_low + (grey - low) * slope, 0.0);
         // Where the curve is steep, chroma grows, half as much as channels apart would let it: less so that of pure
         // colours, which have nowhere to go.

@@ -1,10 +1,21 @@
 use super::*;
-use darkroot_photo::Size;
+use darkroot_photo::{CameraSpace, Rgb, Scene, Size};
 
 const LIMITS: [f32; 3] = [2.0, 1.0, 1.5];
 
 fn treatment() -> Treatment {
     Treatment::Rebuild(Rebuild { limits: LIMITS, colours: Arc::default(), uneven: false })
+}
+
+/// A rebuilt colour of a camera whose RGB is the scene's, made as white as it is to become.
+fn whitened(colour: [f32; 3]) -> [f32; 3] {
+    let picture = |v: [f32; 3]| v.map(|v| vec![v]);
+    let camera: Rgb<CameraSpace> =
+        Rgb::from_planes(Size { width: 1, height: 1 }, picture(colour)).unwrap();
+    let whitening = Whitening::of(&camera, &treatment());
+    let mut scene: Rgb<Scene> = camera.into_space();
+    whiten(&mut scene, &whitening);
+    scene.at(0, 0)
 }
 
 /// A grey surface of the given light under an RGGB array, clipped by the sensor.
@@ -47,19 +58,13 @@ fn corrections_that_move_the_limits_move_what_counts_as_clipped() {
 fn a_surface_that_clips_in_every_channel_is_neutral() {
     let [r, g, b] = rebuilt(LIMITS, LIMITS, [1.4, 0.9, 0.7]);
     assert!((r - g).abs() < 1e-6 && (g - b).abs() < 1e-6 && r >= 2.0 - 1e-6, "{r} {g} {b}");
-    let planes = LIMITS.map(|l| vec![l]);
-    let mut picture = Rgb::from_planes(Size { width: 1, height: 1 }, planes).unwrap();
-    neutralise(&mut picture, &treatment());
-    let [r, g, b] = picture.at(0, 0);
+    let [r, g, b] = whitened(LIMITS);
     assert!((r - g).abs() < 1e-6 && (g - b).abs() < 1e-6 && r >= 2.0 - 1e-6, "{r} {g} {b}");
 }
 
 #[test]
 fn a_saturated_red_light_keeps_its_hue() {
-    let mut picture =
-        Rgb::from_planes(Size { width: 1, height: 1 }, [vec![2.0], vec![0.2], vec![0.1]]).unwrap();
-    neutralise(&mut picture, &treatment());
-    assert_eq!(picture.at(0, 0), [2.0, 0.2, 0.1]);
+    assert_eq!(whitened([2.0, 0.2, 0.1]), [2.0, 0.2, 0.1]);
 }
 
 /// Colours (mean 1) of twelve hues, three strengths.
@@ -93,10 +98,7 @@ fn light_that_grows_makes_every_channel_grow_in_small_steps() {
     for colour in colours() {
         let at = |stops: f32| {
             let seen = from_fn(|c| (colour[c] * stops.exp2()).min(LIMITS[c]));
-            let rebuilt = rebuilt(seen, LIMITS, colour).map(|v| vec![v]);
-            let mut picture = Rgb::from_planes(Size { width: 1, height: 1 }, rebuilt).unwrap();
-            neutralise(&mut picture, &treatment());
-            picture.at(0, 0)
+            whitened(rebuilt(seen, LIMITS, colour))
         };
         let mut before = at(-2.0);
         for i in 1..600 {

@@ -135,7 +135,7 @@ fn pure_colours_stay_bright_and_of_their_colour() {
     assert!(red[0] > 0.8 && red[1] < 0.12 && red[2] < 0.12, "{red:?}");
     for light in [0.05, 0.2, 0.5, 1.0] {
         let blue = at([0.0, 0.0, light]);
-        assert!(blue[2] > light * 0.7 && blue[0] < 0.02 && blue[1] < 0.06, "{light}: {blue:?}");
+        assert!(blue[2] > light * 0.7 && blue[0] < 0.02 && blue[1] < 0.065, "{light}: {blue:?}");
     }
 }
 
