@@ -47,7 +47,7 @@ fn interpolation(array: &str) -> Option<Ready> {
 }
 
 fn sharpening() -> Ready {
-    let (wide, sharpener) = (planes(), Sharpener::of(0.6, 1.0, None, [1.0; 3]));
+    let (wide, sharpener) = (planes(), Sharpener::of(0.6, 1.0, None, [1.0; 3], 1.0));
     let (mut scratch, mut picture) = (sharpen::Scratch::default(), Rgb::black(SIZE));
     Box::new(move || sharpen::sharpen(black_box(&wide), &sharpener, &mut scratch, &mut picture))
 }

@@ -160,6 +160,12 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let is_uneven = analysis.light().is_corrected()
         || !capture.picture_corrections.is_empty()
         || laid.vignetting.is_some();
+    let highlights = match recipe.highlights {
+        _ if camera_output => Treatment::Keep,
+        // A measurement must not contain what was guessed.
+        Highlights::Rebuild if linear => Treatment::Keep,
+        wanted => treatment(analysis, wanted, multipliers, is_uneven),
+    };
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
@@ -176,14 +182,9 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
             mends,
             denoiser,
             lateral,
-            sharpener: sharpener(analysis, sharpening, multipliers),
+            sharpener: sharpener(analysis, sharpening, multipliers, &highlights),
             picture_corrections: capture.picture_corrections.iter().filter(is_applied).cloned().collect(),
-            highlights: match recipe.highlights {
-                _ if camera_output => Treatment::Keep,
-                // A measurement must not contain what was guessed.
-                Highlights::Rebuild if linear => Treatment::Keep,
-                wanted => treatment(analysis, wanted, multipliers, is_uneven),
-            },
+            highlights,
         },
         model: (!camera_output).then(|| {
             let to_scene = RgbSpace::REC2020.from_xyz_under(white::D50);
@@ -256,12 +257,23 @@ const BLURS: RangeInclusive<f32> = 0.3..=0.9;
 const USUAL_BLUR: f32 = 0.4;
 
 /// What sharpens the picture.
-fn sharpener(analysis: &Analysis, amount: f32, multipliers: [f32; 3]) -> Option<Sharpener> {
+fn sharpener(
+    analysis: &Analysis,
+    amount: f32,
+    multipliers: [f32; 3],
+    highlights: &Treatment,
+) -> Option<Sharpener> {
     if analysis.capture().rendered || amount <= 0.0 {
         return None;
     }
     let blur = analysis.blur().unwrap_or(USUAL_BLUR).min(*BLURS.end());
-    (blur >= *BLURS.start()).then(|| Sharpener::of(blur, amount, analysis.noise_model(), multipliers))
+    let white = match highlights {
+        Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) => {
+            limits.iter().fold(f32::MAX, |a, &b| a.min(b))
+        }
+        _ => f32::MAX,
+    };
+    (blur >= *BLURS.start()).then(|| Sharpener::of(blur, amount, analysis.noise_model(), multipliers, white))
 }
 
 /// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another

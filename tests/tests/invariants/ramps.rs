@@ -118,8 +118,7 @@ fn ramps_of_every_hue_run_into_clipping_without_steps_and_keep_their_hue() {
 ///
 /// Measured: 1.7, 0.94 and 0.2 degrees; 2.3, 1.11 and 0.5; 2.3, 1.32 and 0.8. The curve alone, of a sensor without an end,
 /// takes 1.8 and 0.9; the largest one of 0.4 is its own, of a yellow before it clips.
-const BOUNDS: [(f64, f64, f64, f64); 3] =
-    [(0.2, 1.8, 1.0, 1.0), (0.4, 2.4, 1.2, 1.0), (0.7, 2.5, 1.4, 1.5)];
+const BOUNDS: [(f64, f64, f64, f64); 3] = [(0.2, 1.8, 1.0, 1.0), (0.4, 2.4, 1.2, 1.0), (0.7, 2.5, 1.4, 1.5)];
 
 #[test]
 fn noise_makes_no_steps() {

@@ -10,8 +10,7 @@ fn treatment() -> Treatment {
 /// A rebuilt colour of a camera whose RGB is the scene's, made as white as it is to become.
 fn whitened(colour: [f32; 3]) -> [f32; 3] {
     let picture = |v: [f32; 3]| v.map(|v| vec![v]);
-    let camera: Rgb<CameraSpace> =
-        Rgb::from_planes(Size { width: 1, height: 1 }, picture(colour)).unwrap();
+    let camera: Rgb<CameraSpace> = Rgb::from_planes(Size { width: 1, height: 1 }, picture(colour)).unwrap();
     let whitening = Whitening::of(&camera, &treatment());
     let mut scene: Rgb<Scene> = camera.into_space();
     whiten(&mut scene, &whitening);

@@ -41,8 +41,9 @@ const DOUBTFUL: f32 = 1.7;
 const BEYOND: f32 = 0.04;
 /// A line or a dot may stand out by this much more than it does.
 const STANDS_OUT: f32 = 0.5;
-/// No pixel becomes brighter by more than this factor.
+/// No pixel becomes brighter or darker by more than this factor.
 const MOST: f32 = 3.0;
+const LEAST: f32 = 1.0 / MOST;
 
 /// What undoes the blur of one capture.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,11 +54,14 @@ pub struct Sharpener {
     amount: f32,
     /// Variance of what the kernel gives in a noisy picture without detail.
     noise: Line,
+    /// Light that brighter light counts as: how bright clipped highlights are was guessed, and has no edges to sharpen.
+    white: f32,
 }
 
 impl Sharpener {
-    /// For a blur of so many pixels (standard deviation), in light balanced with these multipliers.
-    pub fn of(blur: f32, amount: f32, noise: Option<NoiseModel>, multipliers: [f32; 3]) -> Self {
+    /// For a blur of so many pixels (standard deviation), in light balanced with these multipliers, in which what is brighter than
+    /// `white` has no detail.
+    pub fn of(blur: f32, amount: f32, noise: Option<NoiseModel>, multipliers: [f32; 3], white: f32) -> Self {
         let kernel = Kernel::of(f64::from(blur));
         let factor = DOUBTFUL * INTERPOLATED * kernel.power();
         let noise = noise.map_or(Line::default(), |model| {
@@ -67,7 +71,7 @@ impl Sharpener {
                 floor: sum(&|c| multipliers[c] * multipliers[c] * model.channels[c].floor),
             }
         });
-        Self { kernel, amount, noise }
+        Self { kernel, amount, noise, white }
     }
 }
 
@@ -119,7 +123,7 @@ pub fn sharpen(
 ) {
     let size = Size { width: wide.size().width - 2 * BORDER, height: wide.size().height - 2 * BORDER };
     out.resize(size);
-    light(wide, &mut scratch.light);
+    light(wide, sharpener.white, &mut scratch.light);
     sharpener.kernel.details(&scratch.light, &mut scratch.details);
     squares(&scratch.details, &mut scratch.power);
     smallest(&scratch.light, &mut scratch.low);
@@ -146,15 +150,16 @@ pub fn sharpen(
     }
 }
 
-/// The light of a picture.
-fn light(picture: &Rgb<CameraSpace>, light: &mut Plane) {
+/// The light of a picture, at most that of white.
+fn light(picture: &Rgb<CameraSpace>, white: f32, light: &mut Plane) {
     light.resize(picture.size().width, picture.size().height);
     let [red, green, blue] = picture.planes();
     vectorised(
         #[inline(always)]
         || {
             for (((out, r), g), b) in light.samples.iter_mut().zip(red).zip(green).zip(blue) {
-                *out = SHARES[0] * r + SHARES[1] * g + SHARES[2] * b;
+                let sum = SHARES[0] * r + SHARES[1] * g + SHARES[2] * b;
+                *out = if sum < white { sum } else { white };
             }
         },
     );
@@ -189,7 +194,7 @@ impl Scratch {
                     let new = if new < high { new } else { high };
                     let new = if new > low { new } else { low };
                     let new = if new < MOST * v { new } else { MOST * v };
-                    let new = if new > 0.0 { new } else { 0.0 };
+                    let new = if new > LEAST * v { new } else { LEAST * v };
                     *factor = if v > 0.0 { new / v } else { 1.0 };
                 }
             },

@@ -3,7 +3,7 @@
 use darkroot_photo::{CameraSpace, Rgb};
 
 use super::kernel::RADIUS;
-use super::{AROUND, BEYOND, BORDER, MOST, SHARES, STANDS_OUT, Sharpener};
+use super::{AROUND, BEYOND, BORDER, LEAST, MOST, SHARES, STANDS_OUT, Sharpener};
 
 /// What the pixel in a column and row of a picture becomes; it has [`BORDER`] pixels around it.
 pub(super) fn sharpened(
@@ -14,8 +14,10 @@ pub(super) fn sharpened(
     let width = picture.size().width as isize;
     let (x, y) = (x as isize, y as isize);
     let planes = picture.planes();
-    let light =
-        |x: isize, y: isize| -> f32 { (0..3).map(|c| SHARES[c] * planes[c][(y * width + x) as usize]).sum() };
+    let light = |x: isize, y: isize| -> f32 {
+        let sum: f32 = (0..3).map(|c| SHARES[c] * planes[c][(y * width + x) as usize]).sum();
+        sum.min(sharpener.white)
+    };
     let details = |x: isize, y: isize| -> f32 {
         square(RADIUS).map(|(i, j)| sharpener.kernel.at(i, j) * light(x + i, y + j)).sum()
     };
@@ -33,7 +35,7 @@ pub(super) fn sharpened(
     let lowest = least - beyond * height.min(2.0 * least) - STANDS_OUT * (closed - here);
     let highest = most + beyond * height + STANDS_OUT * (here - opened);
     let new = (here + sharpener.amount * sure * details(x, y)).min(highest).max(lowest).min(MOST * here);
-    let factor = if here > 0.0 { new.max(0.0) / here } else { 1.0 };
+    let factor = if here > 0.0 { new.max(LEAST * here) / here } else { 1.0 };
     assert!(x >= BORDER as isize && y >= BORDER as isize);
     planes.map(|plane| factor * plane[(y * width + x) as usize])
 }

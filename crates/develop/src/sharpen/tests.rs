@@ -43,8 +43,12 @@ fn sharpened(picture: &Rgb<CameraSpace>, sharpener: &Sharpener) -> Rgb<CameraSpa
 #[test]
 fn the_stage_is_what_its_definition_says() {
     let picture = busy();
-    for (blur, amount, noise) in [(0.5, 1.0, None), (0.8, 1.7, Some(noise())), (0.35, 0.4, Some(noise()))] {
-        let sharpener = Sharpener::of(blur, amount, noise, [2.1, 1.0, 1.6]);
+    for (blur, amount, noise, white) in [
+        (0.5, 1.0, None, f32::INFINITY),
+        (0.8, 1.7, Some(noise()), 0.7),
+        (0.35, 0.4, Some(noise()), f32::INFINITY),
+    ] {
+        let sharpener = Sharpener::of(blur, amount, noise, [2.1, 1.0, 1.6], white);
         let fast = sharpened(&picture, &sharpener);
         assert_eq!(fast.size(), Size { width: SIZE.width - 2 * BORDER, height: SIZE.height - 2 * BORDER });
         for y in 0..fast.size().height {
@@ -64,7 +68,7 @@ fn twice_the_light_is_twice_the_picture() {
     let picture = busy();
     let mut twice = picture.clone();
     twice.planes_mut().into_iter().flatten().for_each(|v| *v *= 2.0);
-    let sharpener = Sharpener::of(0.6, 1.0, None, [1.0; 3]);
+    let sharpener = Sharpener::of(0.6, 1.0, None, [1.0; 3], f32::INFINITY);
     let (one, two) = (sharpened(&picture, &sharpener), sharpened(&twice, &sharpener));
     for (one, two) in one.planes().into_iter().flatten().zip(two.planes().into_iter().flatten()) {
         assert_eq!(2.0 * one, *two);
@@ -77,8 +81,27 @@ fn an_even_field_stays() {
     for (plane, v) in picture.planes_mut().into_iter().zip([0.2, 0.4, 0.3]) {
         plane.fill(v);
     }
-    let out = sharpened(&picture, &Sharpener::of(0.8, 2.0, None, [1.0; 3]));
+    let out = sharpened(&picture, &Sharpener::of(0.8, 2.0, None, [1.0; 3], f32::INFINITY));
     for (plane, v) in out.planes().into_iter().zip([0.2, 0.4, 0.3]) {
         assert!(plane.iter().all(|w| (w / v - 1.0).abs() < 1e-5));
     }
+}
+
+#[test]
+fn guessed_highlights_give_no_dark_dots() {
+    // Between rebuilt highlights of many times white lie pixels that are just white, or a little darker.
+    let mut picture = Rgb::black(SIZE);
+    for plane in picture.planes_mut() {
+        plane.fill(6.0);
+        for (i, v) in [(700, 1.0), (745, 1.1), (990, 0.8)] {
+            plane[i] = v;
+        }
+    }
+    let out = sharpened(&picture, &Sharpener::of(0.8, 1.0, None, [1.0; 3], 1.0));
+    let darkest = out.planes()[1].iter().copied().fold(f32::MAX, f32::min);
+    assert!(darkest > 0.65, "{darkest}");
+    // Nor where nobody knows what is white.
+    let out = sharpened(&picture, &Sharpener::of(0.8, 1.0, None, [1.0; 3], f32::INFINITY));
+    let darkest = out.planes()[1].iter().copied().fold(f32::MAX, f32::min);
+    assert!(darkest > 0.25, "{darkest}");
 }
