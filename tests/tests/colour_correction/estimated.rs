@@ -120,5 +120,22 @@ fn a_real_shot_needs_no_chart() {
     let matrix = adaptation::bradford(white, white::D50) * balanced;
     let matrix = error(&|rgb| (matrix * Vector3::from(rgb)).into());
     println!("estimated {estimate:.2}, {}; by the matrix {matrix:.2}", estimated.words());
+    let back = adaptation::bradford(white::D50, white);
+    let error_a = |of: &dyn Fn([f64; 3]) -> Xyz| {
+        let at = |scale: f64| {
+            let off = |p: &darkroot_calibrate::JudgedPatch| {
+                let a = Xyz::from(back * Vector3::from(of(p.rgb).scaled(scale)));
+                let b = Xyz::from(back * Vector3::from(p.reference));
+                de2000(a.lab(white), b.lab(white))
+            };
+            measured.iter().map(off).sum::<f64>() / measured.len() as f64
+        };
+        (0..=200).map(|i| at(0.8 + 0.002 * f64::from(i))).fold(f64::INFINITY, f64::min)
+    };
+    let known = estimated.profile.known_camera().unwrap();
+    let spectrum = known.model_under(light.spectrum.as_ref().unwrap()).unwrap();
+    println!("A: white {:.3} spectrum {:.3} matrix {:.3}; D50 spectrum {:.3}; family {:?}", error_a(&|rgb| model.xyz(rgb)), error_a(&|rgb| spectrum.xyz(rgb)), error_a(&|rgb| {let m= adaptation::bradford(white, white::D50) * balanced; (m * Vector3::from(rgb)).into()}), error(&|rgb| spectrum.xyz(rgb)), estimated.estimate.family);
+    println!("{published:?} {:?}", photo.capture().calibrations.len());
+    for p in &measured { println!("{} {:?} {:?} {:?} ex {:?}", p.name, p.rgb, p.reference, model.xyz(p.rgb), p.excluded); }
     assert!(estimate < 1.9 && estimate < 0.8 * matrix, "{estimate:.2} {matrix:.2}");
 }

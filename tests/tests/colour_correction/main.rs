@@ -9,6 +9,7 @@ mod data;
 mod estimated;
 mod held_out;
 mod published_tables;
+mod references;
 mod shipped;
 mod spectral_prior;
 mod twenty_four;
