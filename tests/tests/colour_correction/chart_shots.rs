@@ -388,11 +388,10 @@ fn corrections_do_no_harm_where_there_is_nothing_to_correct() {
     }
 }
 
-/// The patches of the Passport, balanced by its greys, with the stray light taken out.
-pub(super) fn passport_by_a_lamp(file: PathBuf) -> Vec<darkroot_calibrate::JudgedPatch> {
+/// The Passport as a shot by a lamp, with the stray light taken out.
+pub(super) fn passport_by_a_lamp(file: PathBuf) -> MadeProfile {
     let light = darkroot::light::find("A").unwrap();
-    let made = profiled(file, light, "passport24", &data::classic_24(), correct_glare());
-    made.lights[0].calibrated.patches.clone()
+    profiled(file, light, "passport24", &data::classic_24(), correct_glare())
 }
 
 /// A lamp in front, a window in dusk behind, a black level in the file that is too high; see docs/charts.md.

@@ -8,6 +8,7 @@ mod chart_shots;
 mod data;
 mod estimated;
 mod held_out;
+mod passport;
 mod published_tables;
 mod references;
 mod shipped;

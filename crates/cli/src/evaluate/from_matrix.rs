@@ -60,7 +60,10 @@ impl FromMatrix {
                 for result in results {
                     let figures: Vec<String> =
                         result.errors.iter().map(|(_, e)| format!("{:.2}", e.mean)).collect();
-                    writeln!(out, "    {:34} {}", shown(&result.camera), figures.join("  "))?;
+                    let [estimate, matrix] = result.expected;
+                    let camera = shown(&result.camera);
+                    let figures = figures.join("  ");
+                    writeln!(out, "    {camera:34} {figures}   expected {estimate:.2}, of the matrix {matrix:.2}")?;
                 }
             }
         }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::{Matrix3, Spectrum, Vector3};
 use darkroot_profile::camera::{
-    Difference, KnownCamera, Observation, Peers, Posterior, Regression, computed, families, light,
+    Difference, Estimate, Observation, Peers, Regression, computed, families, light,
 };
 use darkroot_profile::fit::virtual_set::VirtualSet;
 use darkroot_profile::fit::{fit, root_set};
@@ -87,6 +87,16 @@ pub struct Judgement {
     pub errors: Vec<(Method, Summary)>,
     /// The same for each set, mean only.
     pub sets: Vec<(Method, Vec<f64>)>,
+    /// Mean dE2000 under D65 that was to be expected of the estimated camera, and of the matrix: the program takes the one
+    /// of which less is to be expected.
+    pub expected: [f64; 2],
+}
+
+impl Judgement {
+    /// Whether the program would take the matrix.
+    pub fn matrix_is_taken(&self) -> bool {
+        self.expected[1] < self.expected[0]
+    }
 }
 
 /// What came out.
@@ -139,8 +149,7 @@ pub fn evaluate(request: &Request) -> Result<Outcome, Error> {
         let families = families(&differences, &of_parts.collect::<Vec<_>>());
         let peers = Peers::new(&known, weighted.clone(), families).ok_or_else(undetermined)?;
         let published = Observation { light: d65.clone(), matrix: camera.matrix, listed: true };
-        let estimate = Posterior::of(&peers, &published).ok_or_else(undetermined)?.sensitivities();
-        let estimate = KnownCamera::new(&estimate).ok_or_else(undetermined)?;
+        let estimate = Estimate::judged(&peers, Some(&published), &set, &d65).ok_or_else(undetermined)?;
         let judge = |light: &LightSource| judge(camera, &estimate, &set, light, request);
         request.lights.iter().map(judge).collect::<Result<Vec<_>, _>>()
     };
@@ -150,7 +159,7 @@ pub fn evaluate(request: &Request) -> Result<Outcome, Error> {
 
 fn judge(
     camera: &Known,
-    estimate: &KnownCamera,
+    estimate: &Estimate,
     set: &VirtualSet,
     light: &LightSource,
     request: &Request,
@@ -162,7 +171,7 @@ fn judge(
     let spectrum = cut(whole, request.between);
     let camera_there = camera.sensitivities.under(&spectrum).ok_or_else(blind)?;
     let model_under = |light: &Spectrum| -> Option<Model> {
-        let rendered = set.render(&estimate.sensitivities().under(light)?, light).ok()?;
+        let rendered = set.render(&estimate.camera.sensitivities().under(light)?, light).ok()?;
         root_set::fit(&rendered).ok()
     };
     let white = Vector3::from(spectrum.white());
@@ -191,6 +200,7 @@ fn judge(
         light: name.to_owned(),
         errors: methods.iter().map(|(method, model)| (*method, judged.errors(model))).collect(),
         sets: methods.iter().map(|(method, model)| (*method, judged.means(model))).collect(),
+        expected: [estimate.expected, estimate.expected_of_matrix.unwrap_or(f64::INFINITY)],
     })
 }
 
