@@ -236,8 +236,7 @@ fn origin(request: &ChartRequest, which: Option<&WhichReference<'_>>) -> Origin 
         summary: format!("{count} shot{} of a chart", if count == 1 { "" } else { "s" }),
         chart: request.layout.title.clone(),
         reference: which.map_or_else(|| request.reference_name.clone(), |w| w.name.to_owned()),
-        reference_sha256: which
-            .map_or_else(|| request.reference_sha256.clone(), |w| w.sha256.to_owned()),
+        reference_sha256: which.map_or_else(|| request.reference_sha256.clone(), |w| w.sha256.to_owned()),
         date: request.date.clone(),
         program: format!("darkroot {}", crate::VERSION),
         ..Origin::default()

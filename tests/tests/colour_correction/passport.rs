@@ -55,7 +55,8 @@ fn developed(windows: &[Quad], profile: ProfileChoice) -> Vec<Xyz> {
         };
         let ((left, right), (top, bottom)) = (ends(0), ends(1));
         let inside = (top..=bottom).flat_map(|y| (left..=right).map(move |x| (x, y)));
-        let inside = inside.filter(|(x, y)| darkroot_chart::geometry::contains(window, [*x as f64, *y as f64]));
+        let inside =
+            inside.filter(|(x, y)| darkroot_chart::geometry::contains(window, [*x as f64, *y as f64]));
         let (mut sum, mut count) = ([0.0; 3], 0.0);
         for (x, y) in inside {
             let pixel = &samples[3 * (y * picture.size.width + x)..][..3];

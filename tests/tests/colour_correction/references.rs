@@ -5,8 +5,8 @@
 //! chart that is shot is never the one that a built-in reference was measured on: the SG and the Classic are BabelColor's,
 //! the built-in ones the maker's and ISETCam's.
 
-use darkroot::estimate::estimate_named;
 use darkroot::Limits;
+use darkroot::estimate::estimate_named;
 use darkroot_colour::Spectrum;
 use darkroot_profile::Model;
 use rayon::prelude::*;
@@ -124,7 +124,9 @@ fn the_default_is_nearly_as_good_as_true_spectra_under_nine_lights() {
     }
     let others: Vec<&Case> = all.iter().filter(|c| c.light != "D50").collect();
     let [spectra, lab, nothing] = [0, 1, 2].map(|i| column(&others, i));
-    println!("both charts, all lights but D50: own spectra {spectra:.3}, own Lab {lab:.3}, nothing {nothing:.3}");
+    println!(
+        "both charts, all lights but D50: own spectra {spectra:.3}, own Lab {lab:.3}, nothing {nothing:.3}"
+    );
     assert!(lab < spectra + 0.2, "{lab:.3} {spectra:.3}");
 }
 
@@ -134,7 +136,10 @@ fn the_default_is_nearly_as_good_as_true_spectra_under_nine_lights() {
 fn a_chart_of_which_nothing_is_told_serves_lamps() {
     let all = cases(&CAMERAS[1..2], &["A", "LED-RGB1"], &[Told::Spectra, Told::Lab, Told::Nothing]);
     for case in &all {
-        println!("{} {}: {:.3?}, {}; no chart {:.3}", case.chart, case.light, case.told, case.chosen, case.no_chart);
+        println!(
+            "{} {}: {:.3?}, {}; no chart {:.3}",
+            case.chart, case.light, case.told, case.chosen, case.no_chart
+        );
     }
     let all: Vec<&Case> = all.iter().collect();
     let [spectra, lab, nothing] = [0, 1, 2].map(|i| column(&all, i));

@@ -63,7 +63,10 @@ impl FromMatrix {
                     let [estimate, matrix] = result.expected;
                     let camera = shown(&result.camera);
                     let figures = figures.join("  ");
-                    writeln!(out, "    {camera:34} {figures}   expected {estimate:.2}, of the matrix {matrix:.2}")?;
+                    writeln!(
+                        out,
+                        "    {camera:34} {figures}   expected {estimate:.2}, of the matrix {matrix:.2}"
+                    )?;
                 }
             }
         }
@@ -80,7 +83,7 @@ fn write_light(
     let count = results.len().max(1) as f64;
     writeln!(out, "{}, {} cameras, dE2000", shown(light), results.len())?;
     writeln!(out, "  {:40} mean   95 %   max   by set: {}", "", shown(&names.join(", ")))?;
-    let mut means: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    let mut means: BTreeMap<&str, [f64; 3]> = BTreeMap::new();
     for method in Method::ALL {
         let (mut sums, mut sets, mut seen) = ([0.0; 3], vec![0.0; names.len()], false);
         for result in results {
@@ -92,7 +95,8 @@ fn write_light(
                 match method {
                     Method::Matrix => means.entry(&result.camera).or_default()[0] = e.mean,
                     Method::Spectrum => means.entry(&result.camera).or_default()[1] = e.mean,
-                    Method::White | Method::Chart => {}
+                    Method::White => means.entry(&result.camera).or_default()[2] = e.mean,
+                    Method::Chart => {}
                 }
             }
             for (_, each) in result.sets.iter().filter(|(m, _)| *m == method) {
@@ -105,14 +109,37 @@ fn write_light(
             writeln!(out, "  {method:40} {mean:.3}  {p95:5.2}  {max:5.1}   {}", sets.join(" "))?;
         }
     }
-    let worst = means.iter().max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
-    if let Some((camera, [matrix, estimate])) = worst {
-        let camera = shown(camera);
-        writeln!(out, "  worst: {camera} with {estimate:.2} (its matrix {matrix:.2})")?;
+    for (known, k) in [("spectrum", 1), ("white", 2)] {
+        let worst = means.iter().max_by(|a, b| a.1[k].total_cmp(&b.1[k]));
+        if let Some((camera, errors)) = worst {
+            let camera = shown(camera);
+            writeln!(
+                out,
+                "  worst, {known} known: {camera} with {:.2} (its matrix {:.2})",
+                errors[k], errors[0]
+            )?;
+        }
+        for (camera, errors) in means.iter().filter(|(_, e)| e[k] > e[0] + WORSE) {
+            let camera = shown(camera);
+            writeln!(out, "  worse than its matrix: {camera} {:.2} against {:.2}", errors[k], errors[0])?;
+        }
     }
-    for (camera, [matrix, estimate]) in means.iter().filter(|(_, [m, e])| *e > *m + WORSE) {
-        writeln!(out, "  worse than its matrix: {} {estimate:.2} against {matrix:.2}", shown(camera))?;
-    }
+    write_noise(out, results)?;
     writeln!(out)?;
+    Ok(())
+}
+
+/// Noise in dark saturated colours against the published matrix's.
+fn write_noise(out: &mut impl std::io::Write, results: &[&Judgement]) -> Result<()> {
+    let Some(worst) = results.iter().max_by(|a, b| a.noise[1].total_cmp(&b.noise[1])) else { return Ok(()) };
+    let mean = |k: usize| results.iter().map(|r| r.noise[k]).sum::<f64>() / results.len() as f64;
+    writeln!(
+        out,
+        "  noise in dark saturated colours, the published matrix's = 1: spectrum known {:.2}, white known {:.2}; worst {} {:.2}",
+        mean(0),
+        mean(1),
+        shown(&worst.camera),
+        worst.noise[1]
+    )?;
     Ok(())
 }

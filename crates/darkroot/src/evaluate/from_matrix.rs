@@ -12,7 +12,7 @@ use darkroot_profile::camera::{
 };
 use darkroot_profile::fit::virtual_set::VirtualSet;
 use darkroot_profile::fit::{fit, root_set};
-use darkroot_profile::{Kind, Model, Sensitivities, Summary};
+use darkroot_profile::{Kind, Model, Sensitivities, Summary, lint};
 use rayon::prelude::*;
 
 use super::ReflectanceSet;
@@ -87,6 +87,8 @@ pub struct Judgement {
     pub errors: Vec<(Method, Summary)>,
     /// The same for each set, mean only.
     pub sets: Vec<(Method, Vec<f64>)>,
+    /// Noise in dark saturated colours against the published matrix's: the largest of three; spectrum known, white known.
+    pub noise: [f64; 2],
     /// Mean dE2000 under D65 that was to be expected of the estimated camera, and of the matrix: the program takes the one
     /// of which less is to be expected.
     pub expected: [f64; 2],
@@ -185,11 +187,11 @@ fn judge(
     let guess = cut(&guess, request.between);
     let back = bradford(guess.white(), spectrum.white());
     let by_white = model_under(&guess).ok_or_else(blind)?.then(&back);
-    let mut methods = vec![
-        (Method::Matrix, Model::linear(&matrix)),
-        (Method::Spectrum, by_spectrum),
-        (Method::White, by_white),
-    ];
+    let by_matrix = Model::linear(&matrix);
+    let noise =
+        [&by_spectrum, &by_white].map(|model| lint::noise_beside(model, &by_matrix, spectrum.white()));
+    let mut methods =
+        vec![(Method::Matrix, by_matrix), (Method::Spectrum, by_spectrum), (Method::White, by_white)];
     if let Some(chart) = &request.chart {
         let samples = camera_there.render(&chart.reflectances, &spectrum).map_err(|e| fault(e.into()))?;
         methods.push((Method::Chart, fit(&samples, Kind::Linear).map_err(|e| fault(e.into()))?.fit.model));
@@ -200,6 +202,7 @@ fn judge(
         light: name.to_owned(),
         errors: methods.iter().map(|(method, model)| (*method, judged.errors(model))).collect(),
         sets: methods.iter().map(|(method, model)| (*method, judged.means(model))).collect(),
+        noise,
         expected: [estimate.expected, estimate.expected_of_matrix.unwrap_or(f64::INFINITY)],
     })
 }
