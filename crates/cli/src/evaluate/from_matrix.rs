@@ -129,17 +129,20 @@ fn write_light(
     Ok(())
 }
 
-/// Noise in dark saturated colours against the published matrix's.
+/// Noise in dark saturated colours against that of matrices, white known.
 fn write_noise(out: &mut impl std::io::Write, results: &[&Judgement]) -> Result<()> {
-    let Some(worst) = results.iter().max_by(|a, b| a.noise[1].total_cmp(&b.noise[1])) else { return Ok(()) };
-    let mean = |k: usize| results.iter().map(|r| r.noise[k]).sum::<f64>() / results.len() as f64;
-    writeln!(
-        out,
-        "  noise in dark saturated colours, the published matrix's = 1: spectrum known {:.2}, white known {:.2}; worst {} {:.2}",
-        mean(0),
-        mean(1),
-        shown(&worst.camera),
-        worst.noise[1]
-    )?;
+    for of in [Method::Matrix, Method::Chart] {
+        let growth = |r: &Judgement| r.noise.iter().find(|(m, _)| *m == of).map(|(_, growth)| *growth);
+        let mut all: Vec<(f64, &str)> =
+            results.iter().filter_map(|r| Some((growth(r)?, r.camera.as_str()))).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (Some((most, camera)), count) = (all.last(), all.len() as f64) else { continue };
+        let mean = all.iter().map(|(growth, _)| growth).sum::<f64>() / count;
+        let camera = shown(camera);
+        writeln!(
+            out,
+            "  noise in dark saturated colours, white known: {mean:.2} times that of {of} (worst {most:.2}, {camera})"
+        )?;
+    }
     Ok(())
 }

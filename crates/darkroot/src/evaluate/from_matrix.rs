@@ -87,8 +87,8 @@ pub struct Judgement {
     pub errors: Vec<(Method, Summary)>,
     /// The same for each set, mean only.
     pub sets: Vec<(Method, Vec<f64>)>,
-    /// Noise in dark saturated colours against the published matrix's: the largest of three; spectrum known, white known.
-    pub noise: [f64; 2],
+    /// Noise in dark saturated colours, white known, against that of each matrix: the largest of three colours.
+    pub noise: Vec<(Method, f64)>,
     /// Mean dE2000 under D65 that was to be expected of the estimated camera, and of the matrix: the program takes the one
     /// of which less is to be expected.
     pub expected: [f64; 2],
@@ -187,15 +187,18 @@ fn judge(
     let guess = cut(&guess, request.between);
     let back = bradford(guess.white(), spectrum.white());
     let by_white = model_under(&guess).ok_or_else(blind)?.then(&back);
-    let by_matrix = Model::linear(&matrix);
-    let noise =
-        [&by_spectrum, &by_white].map(|model| lint::noise_beside(model, &by_matrix, spectrum.white()));
-    let mut methods =
-        vec![(Method::Matrix, by_matrix), (Method::Spectrum, by_spectrum), (Method::White, by_white)];
+    let mut methods = vec![
+        (Method::Matrix, Model::linear(&matrix)),
+        (Method::Spectrum, by_spectrum),
+        (Method::White, by_white.clone()),
+    ];
     if let Some(chart) = &request.chart {
         let samples = camera_there.render(&chart.reflectances, &spectrum).map_err(|e| fault(e.into()))?;
         methods.push((Method::Chart, fit(&samples, Kind::Linear).map_err(|e| fault(e.into()))?.fit.model));
     }
+    let matrices = methods.iter().filter(|(method, _)| matches!(method, Method::Matrix | Method::Chart));
+    let noise = matrices.map(|(of, model)| (*of, lint::noise_beside(&by_white, model, spectrum.white())));
+    let noise = noise.collect();
     let judged = Seen::by(&camera_there, &spectrum, &request.judged).map_err(|e| fault(e.into()))?;
     Ok(Judgement {
         camera: camera.name.clone(),
