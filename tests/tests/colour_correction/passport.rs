@@ -46,7 +46,7 @@ fn developed(windows: &[Quad], profile: ProfileChoice) -> Vec<Xyz> {
     let plan = photo.plan_by_chart(&file(), &photo.analyse(), &store, &settings, &told).unwrap();
     let picture = plan.render(plan.whole(Scale::FULL), &Cancel::default()).unwrap();
     let (Samples::F32(samples), PictureSpace::Rgb(space)) = (&picture.samples, picture.space) else {
-        panic!("not what was asked for");
+        unreachable!("linear floating-point RGB was asked for");
     };
     let mean = |window: &Quad| {
         let ends = |k: usize| {
