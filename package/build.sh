@@ -28,7 +28,7 @@ build_deb() {
     "$program" completions bash >"$share/bash-completion/completions/darkroot"
     "$program" completions zsh >"$share/zsh/vendor-completions/_darkroot"
     "$program" completions fish >"$share/fish/vendor_completions.d/darkroot.fish"
-    { cat COPYING.LESSER crates/lens/NOTICE profiles/NOTICE; python3 package/licences.py; } >"$share/doc/darkroot/copyright"
+    { cat COPYING.LESSER crates/lens/NOTICE crates/chart/NOTICE profiles/NOTICE; python3 package/licences.py; } >"$share/doc/darkroot/copyright"
     libc=$(objdump -T "$program" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -1 | cut -d_ -f2)
     cat >"$tree/DEBIAN/control" <<CONTROL
 Package: darkroot
@@ -65,7 +65,7 @@ build_static() {
     mkdir -p "$dist/$name"
     install -m 755 -s "$target/$triple/release/darkroot" "$dist/$name/darkroot"
     cp COPYING COPYING.LESSER "$dist/$name"
-    { cat crates/lens/NOTICE profiles/NOTICE; python3 package/licences.py; } >"$dist/$name/THIRD-PARTY.txt"
+    { cat crates/lens/NOTICE crates/chart/NOTICE profiles/NOTICE; python3 package/licences.py; } >"$dist/$name/THIRD-PARTY.txt"
     tar -C "$dist" --owner=0 --group=0 -czf "$dist/$name.tar.gz" "$name"
     rm -rf "${dist:?}/$name"
 }

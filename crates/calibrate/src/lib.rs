@@ -26,6 +26,8 @@ pub use gates::{Finding, Gate, Verdict};
 
 pub mod series;
 
+pub mod reference;
+
 mod balanced;
 pub use balanced::{white_of, white_under};
 

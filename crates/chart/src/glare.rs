@@ -105,7 +105,7 @@ mod tests {
 
     fn chart() -> (Vec<[f64; 2]>, Vec<Xyz>) {
         let colours = builtin("classic24").unwrap();
-        let expected = colours.iter().map(|(_, lab)| lab.xyz(white::D50)).collect();
+        let expected = colours.patches.iter().map(|(_, colour)| colour.xyz_d50()).collect();
         (places(&ChartLayout::by_name("classic24").unwrap()), expected)
     }
 

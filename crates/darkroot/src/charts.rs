@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use darkroot_chart::{ChartLayout, Reference, ReferenceColour};
+use darkroot_chart::{ChartLayout, Reference};
 
 use crate::fault::ChartError;
 use crate::{Error, files};
@@ -16,6 +16,15 @@ pub struct NamedReference {
     pub name: String,
     /// SHA-256 of the file, hexadecimal; empty for those built in.
     pub sha256: String,
+    /// Where nobody named one: what else the chart may be. Which one it is, a shot tells.
+    pub others: Vec<Self>,
+}
+
+impl NamedReference {
+    fn builtin(name: &str) -> Option<Self> {
+        let colours = darkroot_chart::builtin_reference::builtin(name)?;
+        Some(Self { colours, name: name.to_owned(), sha256: String::new(), others: Vec::new() })
+    }
 }
 
 /// Every chart that is built in.
@@ -54,30 +63,21 @@ pub(crate) fn names() -> String {
     names.join(", ")
 }
 
-/// The reference colours of a chart: a file, one that is built in by name, or the built-in one of the layout.
+/// The reference colours of a chart: a file, one that is built in by name, or those that are built in for the layout.
 ///
 /// # Errors
 /// Neither of both, a file that cannot be used, or a chart without a built-in reference.
 pub fn reference(text: Option<&str>, layout: &ChartLayout) -> Result<NamedReference, Error> {
     let fault = |fault: ChartError| Err(Error::chart(Path::new(text.unwrap_or(&layout.name)), fault));
-    let built_in = |name: &str| {
-        let patches = darkroot_chart::builtin_reference::builtin(name)?;
-        let patches = patches.into_iter().map(|(n, lab)| (n, ReferenceColour::Lab(lab))).collect();
-        Some(NamedReference { colours: Reference { patches }, name: name.to_owned(), sha256: String::new() })
-    };
-    // Charts of the 24 classic patches have one reference, whatever their size.
-    let own_reference = |layout: &ChartLayout| match layout.name.as_str() {
-        "classic24" | "passport24" | "mini24" | "nano24" => Some("classic24"),
-        "sg140" => Some("sg140"),
-        _ => None,
-    };
     let Some(text) = text else {
-        return match own_reference(layout).and_then(built_in) {
-            Some(found) => Ok(found),
+        let names = darkroot_chart::builtin_reference::of_layout(&layout.name);
+        let mut built_in = names.iter().filter_map(|name| NamedReference::builtin(name));
+        return match built_in.next() {
+            Some(first) => Ok(NamedReference { others: built_in.collect(), ..first }),
             None => fault(ChartError::NoReference),
         };
     };
-    if let Some(found) = built_in(text) {
+    if let Some(found) = NamedReference::builtin(text) {
         return Ok(found);
     }
     let path = Path::new(text);
@@ -91,5 +91,6 @@ pub fn reference(text: Option<&str>, layout: &ChartLayout) -> Result<NamedRefere
         colours,
         name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         sha256,
+        others: Vec::new(),
     })
 }

@@ -8,12 +8,12 @@ use darkroot_colour::{Illuminant, Matrix3, Spectrum, Vector3};
 use darkroot_photo::{Camera, Capture, Layout};
 use darkroot_profile::camera::{Estimate, Observation, Peers};
 use darkroot_profile::{Origin, Profile, ProfileCamera, Sensitivities};
-use darkroot_raw::Limits;
+use darkroot_raw::{Limits, Listed};
 
 use crate::{Error, ProfileStore};
 
 /// Light of a matrix that names none, as lists of camera matrices have it, K.
-const LISTED: f64 = 6504.0;
+const UNNAMED: f64 = 6504.0;
 /// Matrices for warmer lights than this are for lamps.
 const WARMEST_DAYLIGHT: f64 = 4000.0;
 
@@ -62,12 +62,24 @@ pub fn estimate_named(text: &str, limits: &Limits) -> Result<Estimated, Error> {
         let published = published(&capture).ok_or(Error::Prior)?;
         return of_matrix(&capture.camera, Some(&published)).ok_or(Error::Prior);
     }
-    let plain = |s: &str| s.to_lowercase().replace(char::is_whitespace, "");
-    let listed = darkroot_raw::cameras().into_iter().find(|c| plain(&c.name()) == plain(text));
-    let listed = listed.ok_or_else(|| Error::NotListed { text: text.to_owned() })?;
-    let camera = Camera { common_make: listed.make, common_model: listed.model, ..Camera::default() };
-    let published = Observation { light: light(LISTED), matrix: listed.color_matrix, listed: true };
+    let found = entry(text).ok_or_else(|| Error::NotListed { text: text.to_owned() })?;
+    let published = of_entry(&found);
+    let camera = Camera { common_make: found.make, common_model: found.model, ..Camera::default() };
     of_matrix(&camera, Some(&published)).ok_or(Error::Prior)
+}
+
+/// The matrix that decoders list for a camera ("Nikon D90").
+pub(crate) fn listed(name: &str) -> Option<Observation> {
+    entry(name).as_ref().map(of_entry)
+}
+
+fn entry(name: &str) -> Option<Listed> {
+    let plain = |s: &str| s.to_lowercase().replace(char::is_whitespace, "");
+    darkroot_raw::cameras().into_iter().find(|c| plain(&c.name()) == plain(name))
+}
+
+fn of_entry(entry: &Listed) -> Observation {
+    Observation { light: light(UNNAMED), matrix: entry.color_matrix, listed: true }
 }
 
 fn of_matrix(camera: &Camera, published: Option<&Observation>) -> Option<Estimated> {
@@ -96,8 +108,8 @@ fn profile(camera: &Camera, estimate: &Estimate) -> Profile {
 
 /// The matrix nearest to daylight, for this specimen of the camera.
 pub(crate) fn published(capture: &Capture) -> Option<Observation> {
-    let kelvin = |c: &darkroot_photo::Calibration| c.kelvin.unwrap_or(LISTED);
-    let far = |c: &darkroot_photo::Calibration| (1e6 / kelvin(c) - 1e6 / LISTED).abs();
+    let kelvin = |c: &darkroot_photo::Calibration| c.kelvin.unwrap_or(UNNAMED);
+    let far = |c: &darkroot_photo::Calibration| (1e6 / kelvin(c) - 1e6 / UNNAMED).abs();
     let nearest = capture.calibrations.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
     let own = nearest.camera_calibration.unwrap_or_else(Matrix3::identity);
     let balance = Matrix3::from_diagonal(&Vector3::from(capture.analog_balance));

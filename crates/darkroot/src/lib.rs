@@ -97,7 +97,7 @@ pub mod page;
 pub mod report;
 
 pub mod chart_camera;
-pub use chart_camera::chart_camera;
+pub use chart_camera::{chart_camera, table_camera};
 
 pub mod make_profile;
 pub use make_profile::{ChartRequest, MadeProfile, make_profile};

@@ -13,7 +13,7 @@ use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
 use crate::charts::NamedReference;
 use crate::fault::ChartError;
 use crate::light::LightSource;
-use crate::shot::{Gate, Shot, ShotOptions, View, common_name, open, refuse};
+use crate::shot::{Found, Gate, Shot, ShotOptions, View, WhichReference, common_name, open_view, refuse};
 use crate::shown;
 use crate::{Error, Settings};
 
@@ -35,6 +35,8 @@ pub struct ChartRequest {
     pub reference_name: String,
     /// SHA-256 of its file; empty for those built in.
     pub reference_sha256: String,
+    /// What else the chart may be. The shot decides, by its patches left out of a fit.
+    pub other_references: Vec<NamedReference>,
     /// How the shots are treated.
     pub options: ShotOptions,
     /// Take the mean of shots under one light at one exposure. Without it they are refused, because two lights may
@@ -60,6 +62,7 @@ impl ChartRequest {
             reference: reference.colours,
             reference_name: reference.name,
             reference_sha256: reference.sha256,
+            other_references: reference.others,
             options,
             average: false,
             kind: None,
@@ -114,37 +117,52 @@ pub fn make_profile(request: &ChartRequest, settings: &Settings) -> Result<MadeP
             names.push(&light.light.name);
         }
     }
-    let mut camera: Option<Camera> = None;
+    let mut series = Series::default();
     let mut lights: Vec<MadeLight> = Vec::new();
     for name in names {
-        let opened = open_all(request, name, &mut camera, settings)?;
+        let opened = series.open(request, name, settings)?;
         let Some((_, light)) = request.shots.iter().find(|(_, l)| l.light.name == name) else { continue };
         lights.push(made_light(request, light, opened)?);
     }
-    let camera = camera.ok_or(Error::NoLight)?;
+    let camera = series.camera.ok_or(Error::NoLight)?;
     let calibrations = lights.iter().map(|l| l.calibrated.calibration.clone()).collect();
-    let profile = Profile::new(named(&camera), calibrations, origin(request)).ok_or(Error::NoLight)?;
+    let origin = origin(request, series.reference.as_ref());
+    let profile = Profile::new(named(&camera), calibrations, origin).ok_or(Error::NoLight)?;
     Ok(MadeProfile { profile, lights })
 }
 
-/// Measures the shots under one light; all must be of one camera.
-fn open_all(
-    request: &ChartRequest,
-    light: &str,
-    camera: &mut Option<Camera>,
-    settings: &Settings,
-) -> Result<Vec<(Shot, View)>, Error> {
-    let mut opened = Vec::new();
-    for (path, _) in request.shots.iter().filter(|(_, l)| l.light.name == light) {
-        let (shot, view) = open(path, &request.layout, &request.reference, &request.options, settings)?;
-        let first = camera.get_or_insert_with(|| shot.camera.clone());
-        if *first != shot.camera {
-            let (camera, other) = (common_name(&shot.camera), common_name(first));
-            return Err(Error::chart(path, ChartError::SeveralCameras { camera, other }));
+/// What all shots of a profile share.
+#[derive(Default)]
+struct Series<'a> {
+    camera: Option<Camera>,
+    reference: Option<WhichReference<'a>>,
+}
+
+impl<'a> Series<'a> {
+    /// Measures the shots under one light; all must be of one camera.
+    fn open(
+        &mut self,
+        request: &'a ChartRequest,
+        light: &str,
+        settings: &Settings,
+    ) -> Result<Vec<(Shot, View)>, Error> {
+        let mut opened = Vec::new();
+        for (path, light) in request.shots.iter().filter(|(_, l)| l.light.name == light) {
+            let (layout, options) = (&request.layout, &request.options);
+            let view = open_view(path, options, settings)?;
+            let found = Found::new(path, &view, layout, options, settings)?;
+            let which = self.reference.get_or_insert_with(|| WhichReference::of(request, &found, light));
+            let mut shot = found.shot(layout, which.reference, options)?;
+            shot.notes.extend(which.note.clone());
+            let first = self.camera.get_or_insert_with(|| shot.camera.clone());
+            if *first != shot.camera {
+                let (camera, other) = (common_name(&shot.camera), common_name(first));
+                return Err(Error::chart(path, ChartError::SeveralCameras { camera, other }));
+            }
+            opened.push((shot, view));
         }
-        opened.push((shot, view));
+        Ok(opened)
     }
-    Ok(opened)
 }
 
 /// One light: its shots as one measurement, and the fit to it.
@@ -212,13 +230,13 @@ fn named(camera: &Camera) -> ProfileCamera {
     }
 }
 
-fn origin(request: &ChartRequest) -> Origin {
+fn origin(request: &ChartRequest, which: Option<&WhichReference<'_>>) -> Origin {
     let count = request.shots.len();
     Origin {
         summary: format!("{count} shot{} of a chart", if count == 1 { "" } else { "s" }),
         chart: request.layout.title.clone(),
-        reference: request.reference_name.clone(),
-        reference_sha256: request.reference_sha256.clone(),
+        reference: which.map_or_else(|| request.reference_name.clone(), |w| w.name.to_owned()),
+        reference_sha256: which.map_or_else(|| request.reference_sha256.clone(), |w| w.sha256.to_owned()),
         date: request.date.clone(),
         program: format!("darkroot {}", crate::VERSION),
         ..Origin::default()

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use darkroot_colour::{Matrix3, Vector3, Xyz, white};
+use darkroot_colour::{Xyz, white};
 
 use crate::fit::metric::lab_derivatives;
 use crate::{Calibration, Model};
@@ -223,20 +223,22 @@ pub fn largest_coefficient(model: &Model) -> f64 {
 /// Growth of small equal noise in the three channels of dark saturated colours, in CIELAB, against what the matrix
 /// that the model is near grey makes of it: the largest of red, green and blue.
 pub fn noise_growth(model: &Model) -> f64 {
+    noise_beside(model, &Model::linear(&model.jacobian([0.5; 3])), white::D50)
+}
+
+/// The same against another model, both with XYZ relative to this white.
+pub fn noise_beside(model: &Model, other: &Model, white: Xyz) -> f64 {
     const DARK: [[f64; 3]; 3] = [[0.02, 0.004, 0.003], [0.003, 0.006, 0.02], [0.004, 0.015, 0.005]];
-    let matrix = model.jacobian([0.5; 3]);
-    let noise = |xyz: Xyz, jacobian: Matrix3| (lab_derivatives(xyz, white::D50) * jacobian).norm();
-    let growth = |rgb: [f64; 3]| {
-        let linear = Xyz::from(matrix * Vector3::from(rgb));
-        noise(model.xyz(rgb), model.jacobian(rgb)) / noise(linear, matrix)
-    };
-    DARK.into_iter().map(growth).fold(0.0, f64::max)
+    let noise =
+        |model: &Model, rgb: [f64; 3]| (lab_derivatives(model.xyz(rgb), white) * model.jacobian(rgb)).norm();
+    DARK.into_iter().map(|rgb| noise(model, rgb) / noise(other, rgb)).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Kind, Light, Order, RootPolynomial};
+    use darkroot_colour::Matrix3;
 
     fn calibration(model: Model) -> Calibration {
         Calibration::new(Light { name: "D50".into(), xy: white::D50_XY }, Kind::Linear, model)

@@ -6,7 +6,7 @@ use darkroot::evaluate::from_matrix::{Method, Request, evaluate};
 use darkroot::evaluate::{ReflectanceSet, published};
 use darkroot_colour::difference::de2000;
 use darkroot_colour::temperature::Temperature;
-use darkroot_colour::{Illuminant, Matrix3, Vector3, Xyz, adaptation, white};
+use darkroot_colour::{Illuminant, Xyz, white};
 
 use super::data;
 
@@ -90,35 +90,4 @@ fn the_model_follows_the_white_without_a_jump() {
         println!("{camera}: neighbours differ by {largest:.3} at most");
         assert!(largest < 0.5, "{camera}: {largest}");
     }
-}
-
-/// A Passport in the light of a lamp, shot with a camera that no profile knows, and judged by the patches' own spectra. One
-/// scale is free: how much light fell on it is not known.
-#[test]
-#[cfg_attr(not(has_spectra), ignore = "needs `spectra` in DARKROOT_DATA")]
-fn a_real_shot_needs_no_chart() {
-    let file = data::folder().join("../raw/canon_550d_passport_chart_14bit_packed.dng");
-    let light = darkroot::light::find("A").unwrap();
-    let measured = super::chart_shots::passport_by_a_lamp(file.clone());
-    let photo = darkroot::Photo::open(&std::fs::read(file).unwrap(), &darkroot::Limits::default()).unwrap();
-    let estimated = photo.estimated().unwrap();
-    let model = estimated.profile.model_for(light.light.xy);
-    let error = |of: &dyn Fn([f64; 3]) -> Xyz| {
-        let at = |scale: f64| {
-            let off = |p: &darkroot_calibrate::JudgedPatch| {
-                de2000(of(p.rgb).scaled(scale).lab(white::D50), p.reference.lab(white::D50))
-            };
-            measured.iter().map(off).sum::<f64>() / measured.len() as f64
-        };
-        (0..=200).map(|i| at(0.8 + 0.002 * f64::from(i))).fold(f64::INFINITY, f64::min)
-    };
-    let estimate = error(&|rgb| model.xyz(rgb));
-    let published = photo.capture().calibrations[0].color_matrix;
-    let white = light.light.xy.xyz();
-    let balanced =
-        published.try_inverse().unwrap() * Matrix3::from_diagonal(&(published * Vector3::from(white)));
-    let matrix = adaptation::bradford(white, white::D50) * balanced;
-    let matrix = error(&|rgb| (matrix * Vector3::from(rgb)).into());
-    println!("estimated {estimate:.2}, {}; by the matrix {matrix:.2}", estimated.words());
-    assert!(estimate < 1.9 && estimate < 0.8 * matrix, "{estimate:.2} {matrix:.2}");
 }

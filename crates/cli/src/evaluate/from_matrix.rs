@@ -60,7 +60,13 @@ impl FromMatrix {
                 for result in results {
                     let figures: Vec<String> =
                         result.errors.iter().map(|(_, e)| format!("{:.2}", e.mean)).collect();
-                    writeln!(out, "    {:34} {}", shown(&result.camera), figures.join("  "))?;
+                    let [estimate, matrix] = result.expected;
+                    let camera = shown(&result.camera);
+                    let figures = figures.join("  ");
+                    writeln!(
+                        out,
+                        "    {camera:34} {figures}   expected {estimate:.2}, of the matrix {matrix:.2}"
+                    )?;
                 }
             }
         }
@@ -77,7 +83,7 @@ fn write_light(
     let count = results.len().max(1) as f64;
     writeln!(out, "{}, {} cameras, dE2000", shown(light), results.len())?;
     writeln!(out, "  {:40} mean   95 %   max   by set: {}", "", shown(&names.join(", ")))?;
-    let mut means: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
+    let mut means: BTreeMap<&str, [f64; 3]> = BTreeMap::new();
     for method in Method::ALL {
         let (mut sums, mut sets, mut seen) = ([0.0; 3], vec![0.0; names.len()], false);
         for result in results {
@@ -89,7 +95,8 @@ fn write_light(
                 match method {
                     Method::Matrix => means.entry(&result.camera).or_default()[0] = e.mean,
                     Method::Spectrum => means.entry(&result.camera).or_default()[1] = e.mean,
-                    Method::White | Method::Chart => {}
+                    Method::White => means.entry(&result.camera).or_default()[2] = e.mean,
+                    Method::Chart => {}
                 }
             }
             for (_, each) in result.sets.iter().filter(|(m, _)| *m == method) {
@@ -102,14 +109,40 @@ fn write_light(
             writeln!(out, "  {method:40} {mean:.3}  {p95:5.2}  {max:5.1}   {}", sets.join(" "))?;
         }
     }
-    let worst = means.iter().max_by(|a, b| a.1[1].total_cmp(&b.1[1]));
-    if let Some((camera, [matrix, estimate])) = worst {
-        let camera = shown(camera);
-        writeln!(out, "  worst: {camera} with {estimate:.2} (its matrix {matrix:.2})")?;
+    for (known, k) in [("spectrum", 1), ("white", 2)] {
+        let worst = means.iter().max_by(|a, b| a.1[k].total_cmp(&b.1[k]));
+        if let Some((camera, errors)) = worst {
+            let camera = shown(camera);
+            writeln!(
+                out,
+                "  worst, {known} known: {camera} with {:.2} (its matrix {:.2})",
+                errors[k], errors[0]
+            )?;
+        }
+        for (camera, errors) in means.iter().filter(|(_, e)| e[k] > e[0] + WORSE) {
+            let camera = shown(camera);
+            writeln!(out, "  worse than its matrix: {camera} {:.2} against {:.2}", errors[k], errors[0])?;
+        }
     }
-    for (camera, [matrix, estimate]) in means.iter().filter(|(_, [m, e])| *e > *m + WORSE) {
-        writeln!(out, "  worse than its matrix: {} {estimate:.2} against {matrix:.2}", shown(camera))?;
-    }
+    write_noise(out, results)?;
     writeln!(out)?;
+    Ok(())
+}
+
+/// Noise in dark saturated colours against that of matrices, white known.
+fn write_noise(out: &mut impl std::io::Write, results: &[&Judgement]) -> Result<()> {
+    for of in [Method::Matrix, Method::Chart] {
+        let growth = |r: &Judgement| r.noise.iter().find(|(m, _)| *m == of).map(|(_, growth)| *growth);
+        let mut all: Vec<(f64, &str)> =
+            results.iter().filter_map(|r| Some((growth(r)?, r.camera.as_str()))).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (Some((most, camera)), count) = (all.last(), all.len() as f64) else { continue };
+        let mean = all.iter().map(|(growth, _)| growth).sum::<f64>() / count;
+        let camera = shown(camera);
+        writeln!(
+            out,
+            "  noise in dark saturated colours, white known: {mean:.2} times that of {of} (worst {most:.2}, {camera})"
+        )?;
+    }
     Ok(())
 }

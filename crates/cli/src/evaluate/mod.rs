@@ -36,7 +36,8 @@ pub(crate) struct Evaluate {
     #[arg(long = "sensitivities", value_name = "FILE", required_unless_present = "shots", num_args = 1..)]
     cameras: Vec<PathBuf>,
 
-    /// Reflectances: NAME=FILE.csv, or NAME=FILE.csv:LIST.txt to take only the spectra that a text file lists
+    /// Reflectances: NAME=FILE.csv, or NAME=FILE.csv:LIST.txt to take only the spectra that a text file lists, or sky: blue
+    /// skies as surfaces, computed
     #[arg(long = "set", value_name = "NAME=FILE", required_unless_present = "shots", num_args = 1..)]
     sets: Vec<String>,
 

@@ -140,13 +140,7 @@ impl Make {
                 shown(&made.profile.camera().name())
             ));
             made.lights.iter().for_each(told::say_light);
-            for judged in made.profile.known_camera().into_iter().flat_map(|known| known.figures()) {
-                let (light, errors) = (&judged.light, judged.errors.de2000);
-                crate::say(format_args!(
-                    "  the camera under {light}, left out, dE2000: mean {:.2}, max {:.2}",
-                    errors.mean, errors.max
-                ));
-            }
+            told::say_camera(&made.profile);
         }
         Ok(Outcome::Done)
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use darkroot::{FromTable, from_table, shown};
+use darkroot::{FromTable, TableProfile, from_table, shown, table_camera};
 use darkroot_profile::ProfileCamera;
 
 use super::make::Make;
@@ -54,8 +54,13 @@ pub(super) fn run(make: &Make, output: &Path, common: Common) -> Result<Outcome>
     let (Some(maker), Some(model)) = (&make.table.make, &make.table.camera_model) else {
         bail!("a table does not say which camera it is from: add `--make Nikon --camera-model D700`");
     };
+    if make.as_camera && make.table.measured_in_light {
+        bail!(
+            "`--as-camera` needs what the patches are in every light: spectra, Lab or XYZ under D50; leave \
+             `--measured-in-light` out"
+        );
+    }
     for (given, option) in [
-        (make.as_camera, "--as-camera"),
         (make.report.is_some(), "--report"),
         (make.average, "--average"),
         (make.shot.is_for_shots(), "--reference, --corners, --flat, --dark, --even-out and --correct-glare"),
@@ -73,6 +78,8 @@ pub(super) fn run(make: &Make, output: &Path, common: Common) -> Result<Outcome>
         date: make.date.clone(),
     };
     let made = from_table(&request)?;
+    let camera = make.as_camera.then(|| table_camera(&made)).transpose()?;
+    let made = TableProfile { profile: camera.unwrap_or(made.profile), lights: made.lights };
     darkroot::store::write(&made.profile, output, make.overwrite)?;
     if make.json {
         for (light, calibrated) in &made.lights {
@@ -87,6 +94,7 @@ pub(super) fn run(make: &Make, output: &Path, common: Common) -> Result<Outcome>
             told::say_notes(calibrated);
             told::say_models(light, calibrated);
         }
+        told::say_camera(&made.profile);
     }
     Ok(Outcome::Done)
 }

@@ -4,7 +4,7 @@ use darkroot::LightSource;
 use darkroot::make_profile::{Calibrated, Compared, JudgedPatch, MadeLight};
 use darkroot::shot::{Gate, Verdict};
 use darkroot::shown;
-use darkroot_profile::Errors;
+use darkroot_profile::{Errors, Profile};
 use serde_json::json;
 
 use crate::hint;
@@ -30,6 +30,17 @@ pub(super) fn say_light(light: &MadeLight) {
         ));
     }
     say_models(&light.light, &light.calibrated);
+}
+
+/// How far a profile that is a camera is off under the lights of its patches.
+pub(super) fn say_camera(profile: &Profile) {
+    for judged in profile.known_camera().into_iter().flat_map(|known| known.figures()) {
+        let (light, errors) = (&judged.light, judged.errors.de2000);
+        crate::say(format_args!(
+            "  the camera under {light}, left out, dE2000: mean {:.2}, max {:.2}",
+            errors.mean, errors.max
+        ));
+    }
 }
 
 /// What had to be assumed for a fit.

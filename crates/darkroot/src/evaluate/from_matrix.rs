@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::{Matrix3, Spectrum, Vector3};
 use darkroot_profile::camera::{
-    Difference, KnownCamera, Observation, Peers, Posterior, Regression, computed, families, light,
+    Difference, Estimate, Observation, Peers, Regression, computed, families, light,
 };
 use darkroot_profile::fit::virtual_set::VirtualSet;
 use darkroot_profile::fit::{fit, root_set};
-use darkroot_profile::{Kind, Model, Sensitivities, Summary};
+use darkroot_profile::{Kind, Model, Sensitivities, Summary, lint};
 use rayon::prelude::*;
 
 use super::ReflectanceSet;
@@ -87,6 +87,18 @@ pub struct Judgement {
     pub errors: Vec<(Method, Summary)>,
     /// The same for each set, mean only.
     pub sets: Vec<(Method, Vec<f64>)>,
+    /// Noise in dark saturated colours, white known, against that of each matrix: the largest of three colours.
+    pub noise: Vec<(Method, f64)>,
+    /// Mean dE2000 under D65 that was to be expected of the estimated camera, and of the matrix: the program takes the one
+    /// of which less is to be expected.
+    pub expected: [f64; 2],
+}
+
+impl Judgement {
+    /// Whether the program would take the matrix.
+    pub fn matrix_is_taken(&self) -> bool {
+        self.expected[1] < self.expected[0]
+    }
 }
 
 /// What came out.
@@ -139,8 +151,7 @@ pub fn evaluate(request: &Request) -> Result<Outcome, Error> {
         let families = families(&differences, &of_parts.collect::<Vec<_>>());
         let peers = Peers::new(&known, weighted.clone(), families).ok_or_else(undetermined)?;
         let published = Observation { light: d65.clone(), matrix: camera.matrix, listed: true };
-        let estimate = Posterior::of(&peers, &published).ok_or_else(undetermined)?.sensitivities();
-        let estimate = KnownCamera::new(&estimate).ok_or_else(undetermined)?;
+        let estimate = Estimate::judged(&peers, Some(&published), &set, &d65).ok_or_else(undetermined)?;
         let judge = |light: &LightSource| judge(camera, &estimate, &set, light, request);
         request.lights.iter().map(judge).collect::<Result<Vec<_>, _>>()
     };
@@ -150,7 +161,7 @@ pub fn evaluate(request: &Request) -> Result<Outcome, Error> {
 
 fn judge(
     camera: &Known,
-    estimate: &KnownCamera,
+    estimate: &Estimate,
     set: &VirtualSet,
     light: &LightSource,
     request: &Request,
@@ -162,7 +173,7 @@ fn judge(
     let spectrum = cut(whole, request.between);
     let camera_there = camera.sensitivities.under(&spectrum).ok_or_else(blind)?;
     let model_under = |light: &Spectrum| -> Option<Model> {
-        let rendered = set.render(&estimate.sensitivities().under(light)?, light).ok()?;
+        let rendered = set.render(&estimate.camera.sensitivities().under(light)?, light).ok()?;
         root_set::fit(&rendered).ok()
     };
     let white = Vector3::from(spectrum.white());
@@ -179,18 +190,23 @@ fn judge(
     let mut methods = vec![
         (Method::Matrix, Model::linear(&matrix)),
         (Method::Spectrum, by_spectrum),
-        (Method::White, by_white),
+        (Method::White, by_white.clone()),
     ];
     if let Some(chart) = &request.chart {
         let samples = camera_there.render(&chart.reflectances, &spectrum).map_err(|e| fault(e.into()))?;
         methods.push((Method::Chart, fit(&samples, Kind::Linear).map_err(|e| fault(e.into()))?.fit.model));
     }
+    let matrices = methods.iter().filter(|(method, _)| matches!(method, Method::Matrix | Method::Chart));
+    let noise = matrices.map(|(of, model)| (*of, lint::noise_beside(&by_white, model, spectrum.white())));
+    let noise = noise.collect();
     let judged = Seen::by(&camera_there, &spectrum, &request.judged).map_err(|e| fault(e.into()))?;
     Ok(Judgement {
         camera: camera.name.clone(),
         light: name.to_owned(),
         errors: methods.iter().map(|(method, model)| (*method, judged.errors(model))).collect(),
         sets: methods.iter().map(|(method, model)| (*method, judged.means(model))).collect(),
+        noise,
+        expected: [estimate.expected, estimate.expected_of_matrix.unwrap_or(f64::INFINITY)],
     })
 }
 

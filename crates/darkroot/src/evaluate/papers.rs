@@ -43,11 +43,17 @@ pub struct Row {
     pub paper: Option<[f64; 3]>,
 }
 
-/// Reads a set: `NAME=FILE`, or `NAME=FILE:LIST` with a text file of the names to take.
+/// The set that no file has.
+const SKY: &str = "sky";
+
+/// Reads a set: `NAME=FILE`, or `NAME=FILE:LIST` with a text file of the names to take, or `sky`, which is computed.
 ///
 /// # Errors
 /// Another form, files that cannot be used, names that the file does not have.
 pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
+    if text == SKY {
+        return Ok(ReflectanceSet { name: SKY.to_owned(), reflectances: sky() });
+    }
     let (name, place) =
         text.split_once('=').ok_or_else(|| Error::spectra(Path::new(text), SpectraError::NoSet))?;
     let (file, list) = match place.rsplit_once(':') {
@@ -65,6 +71,18 @@ pub fn read_set(text: &str) -> Result<ReflectanceSet, Error> {
             .map_err(|name| Error::spectra(&file, SpectraError::Missing { name, list: shown(&list) }))?;
     }
     Ok(ReflectanceSet { name: name.to_owned(), reflectances: all.reflectances() })
+}
+
+/// Blue sky as a surface that daylight shows: CIE daylight of 7000 to 25000 K over D65, of luminance 0.1 to 0.5.
+fn sky() -> Vec<Spectrum> {
+    let d65 = Spectrum::daylight(6504.0);
+    let blue = |kelvin: f64| {
+        let day = Spectrum::daylight(kelvin);
+        let ratio = Spectrum(std::array::from_fn(|i| day.0[i] / d65.0[i]));
+        let own = ratio.reflected_xyz(&d65).y;
+        [0.1, 0.2, 0.35, 0.5].map(|luminance| ratio.scaled(luminance / own))
+    };
+    [7000.0, 8500.0, 11000.0, 15000.0, 25000.0].into_iter().flat_map(blue).collect()
 }
 
 /// One table: every model on a set, fitted at exposure 1 and judged at `exposure`, in the papers' protocol: 31

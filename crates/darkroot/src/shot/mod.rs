@@ -5,6 +5,7 @@
 mod light;
 pub(crate) mod rendered;
 mod view;
+mod which;
 
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,7 @@ pub use darkroot_calibrate::{Correct, Finding, Gate, Verdict};
 pub(crate) use light::light_of;
 pub use view::View;
 pub(crate) use view::common_name;
+pub(crate) use which::WhichReference;
 
 use crate::fault::ChartError;
 use crate::find_chart::{self, Place};
@@ -91,10 +93,14 @@ pub fn open(
     options: &ShotOptions,
     settings: &Settings,
 ) -> Result<(Shot, View), Error> {
-    let view =
-        if options.allow_rendered { View::open_any(path, settings)? } else { View::open(path, settings)? };
+    let view = open_view(path, options, settings)?;
     let shot = judged(path, &view, layout, reference, options, settings)?;
     Ok((shot, view))
+}
+
+/// Decodes a shot.
+pub(crate) fn open_view(path: &Path, options: &ShotOptions, settings: &Settings) -> Result<View, Error> {
+    if options.allow_rendered { View::open_any(path, settings) } else { View::open(path, settings) }
 }
 
 /// As [`open`], for a shot that is open already: finds and measures the chart, and checks whether it is good enough.
@@ -109,15 +115,48 @@ pub fn judged(
     options: &ShotOptions,
     settings: &Settings,
 ) -> Result<Shot, Error> {
-    let place = locate(view, layout, options).map_err(|e| Error::chart(path, e))?;
-    let chart = Chart::new(layout, reference).map_err(|e| Error::chart(path, e))?;
-    let dark = options.dark.as_ref().map(|file| companion(file, view, settings)).transpose()?;
-    let flat = options.flat.as_ref().map(|file| companion(file, view, settings)).transpose()?;
-    let companions = Companions {
-        dark: dark.as_ref().map(View::sensor_light),
-        flat: flat.as_ref().map(View::sensor_light),
-    };
-    measured(path, view, place, &chart, companions, options)
+    Found::new(path, view, layout, options, settings)?.shot(layout, reference, options)
+}
+
+/// A shot in which the chart is found, and what helps to measure it.
+pub(crate) struct Found<'a> {
+    path: &'a Path,
+    view: &'a View,
+    place: Place,
+    dark: Option<View>,
+    flat: Option<View>,
+}
+
+impl<'a> Found<'a> {
+    /// Finds the chart, and opens what helps.
+    pub(crate) fn new(
+        path: &'a Path,
+        view: &'a View,
+        layout: &ChartLayout,
+        options: &ShotOptions,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let place = locate(view, layout, options).map_err(|e| Error::chart(path, e))?;
+        let open = |file: &PathBuf| companion(file, view, settings);
+        let dark = options.dark.as_ref().map(open).transpose()?;
+        let flat = options.flat.as_ref().map(open).transpose()?;
+        Ok(Self { path, view, place, dark, flat })
+    }
+
+    /// The shot by one reference of the chart.
+    pub(crate) fn shot(
+        &self,
+        layout: &ChartLayout,
+        reference: &Reference,
+        options: &ShotOptions,
+    ) -> Result<Shot, Error> {
+        let chart = Chart::new(layout, reference).map_err(|e| Error::chart(self.path, e))?;
+        let companions = Companions {
+            dark: self.dark.as_ref().map(View::sensor_light),
+            flat: self.flat.as_ref().map(View::sensor_light),
+        };
+        measured(self.path, self.view, self.place.clone(), &chart, companions, options)
+    }
 }
 
 fn locate(view: &View, layout: &ChartLayout, options: &ShotOptions) -> Result<Place, ChartError> {

@@ -44,7 +44,11 @@ pub fn verify(
     request: &ChartRequest,
     settings: &Settings,
 ) -> Result<Verification, Error> {
-    let (shot, view) = open(path, &request.layout, &request.reference, &request.options, settings)?;
+    // Where nobody named one, the chart is what it was when the profile was made.
+    let recorded = &profile.origin().reference;
+    let same = request.other_references.iter().find(|other| other.name == *recorded);
+    let reference = same.map_or(&request.reference, |same| &same.colours);
+    let (shot, view) = open(path, &request.layout, reference, &request.options, settings)?;
     if !crate::store::is_for(profile, &shot.camera) {
         let (camera, of) = (common_name(&shot.camera), profile.camera().name());
         return Err(Error::chart(path, ChartError::OtherCamera { camera, of }));

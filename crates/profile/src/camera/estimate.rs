@@ -1,13 +1,13 @@
 //! A camera from its published matrix, how sure it is, and whether the matrix itself is the better choice.
 
-use darkroot_colour::{Illuminant, Matrix3, Vector3, Xyz};
+use darkroot_colour::{Illuminant, Matrix3, Spectrum, Vector3, Xyz};
 
 use super::known::KnownCamera;
 use super::offsets::Observation;
 use super::peers::Peers;
 use super::posterior::Posterior;
 use crate::Errors;
-use crate::fit::virtual_set::builtin_surfaces;
+use crate::fit::virtual_set::VirtualSet;
 
 /// Cameras that the posterior is asked for.
 const DRAWS: usize = 12;
@@ -29,15 +29,25 @@ pub struct Estimate {
 impl Estimate {
     /// From a published matrix, or, without one, the mean camera. `None` where the matrix is not usable.
     pub fn of(peers: &Peers, published: Option<&Observation>) -> Option<Self> {
+        let light = Illuminant::by_name("D65")?.spectrum();
+        Self::judged(peers, published, VirtualSet::builtin()?, &light)
+    }
+
+    /// The same with another virtual training set for models, judged under another light than D65.
+    pub fn judged(
+        peers: &Peers,
+        published: Option<&Observation>,
+        set: &VirtualSet,
+        light: &Spectrum,
+    ) -> Option<Self> {
         let posterior = match published {
             Some(published) => Posterior::of(peers, published)?,
             None => Posterior::mean_camera(peers),
         };
         let camera = KnownCamera::new(&posterior.sensitivities())?;
-        let light = Illuminant::by_name("D65")?.spectrum();
         let white = Vector3::from(light.white());
-        let surfaces: Vec<_> = builtin_surfaces()?.iter().map(|(surface, _)| surface.clone()).collect();
-        let model = camera.model_under(&light)?;
+        let surfaces: Vec<_> = peers.surfaces.iter().map(|(surface, _)| surface.clone()).collect();
+        let model = camera.model_by(set, light)?;
         let matrix = published.and_then(|p| {
             let balanced = Matrix3::from_diagonal(&(p.matrix * white));
             Some(p.matrix.try_inverse()? * balanced)
@@ -45,7 +55,7 @@ impl Estimate {
         let to_light = darkroot_colour::adaptation::bradford(darkroot_colour::white::D50, light.white());
         let mut totals = [0.0; 2];
         for draw in posterior.draws(DRAWS) {
-            let samples = draw.under(&light)?.render(&surfaces, &light).ok()?;
+            let samples = draw.under(light)?.render(&surfaces, light).ok()?;
             let error = |of: &dyn Fn([f64; 3]) -> Xyz| {
                 let estimates: Vec<Xyz> = samples.rgb().iter().map(|rgb| of(*rgb)).collect();
                 Errors::between(&estimates, samples.xyz(), samples.white()).de2000.mean

@@ -121,7 +121,11 @@ impl KnownCamera {
     /// The model under a light of known spectrum: balanced camera RGB to XYZ relative to D50. A root polynomial of order 4,
     /// fitted to the built-in surfaces as this camera sees them. `None` for a light of which a channel sees nothing.
     pub fn model_under(&self, light: &Spectrum) -> Option<Model> {
-        let set = VirtualSet::builtin()?;
+        self.model_by(VirtualSet::builtin()?, light)
+    }
+
+    /// The same, fitted to another virtual training set.
+    pub fn model_by(&self, set: &VirtualSet, light: &Spectrum) -> Option<Model> {
         let rendered = set.render(&self.sensitivities.under(light)?, light).ok()?;
         let model = root_set::fit(&rendered).ok()?;
         Some(model.then(&bradford(light.white(), white::D50)))

@@ -56,6 +56,33 @@ fn a_table_makes_the_profile_that_a_shot_makes() {
 }
 
 #[test]
+fn a_table_can_be_kept_as_a_camera_that_knows_every_light() {
+    let desk = Desk::new();
+    let d50 = light("D50");
+    desk.put("chart.csv", csv(&rows(&d50, &d50)));
+    let made = run(&desk, &["chart.csv", "--light", "D50", "--as-camera"]);
+    assert!(made.code == 0 && made.err.contains("the camera under D50, left out"), "{}", made.err);
+    let text = String::from_utf8(desk.read("chart.toml")).unwrap();
+    assert!(text.contains("[sensitivities]") && text.contains("the camera by 1 table of patches"), "{text}");
+    desk.put("shot.dng", shot(&daylight()));
+    let developed = desk.run(&[
+        "develop",
+        "shot.dng",
+        "--profile",
+        "chart.toml",
+        "--illuminant",
+        "FL11",
+        "-o",
+        "shot.png",
+    ]);
+    assert_eq!(developed.code, 0, "{}", developed.err);
+    // What was seen in one light tells of no other.
+    let again = ["chart.csv", "--light", "D50", "--as-camera", "--measured-in-light", "--overwrite"];
+    let refused = run(&desk, &again);
+    assert!(refused.code != 0 && refused.err.contains("--measured-in-light"), "{}", refused.err);
+}
+
+#[test]
 fn colours_measured_in_the_light_are_taken_as_they_are() {
     let desk = Desk::new();
     desk.put("lamp.csv", csv(&rows(&light("A"), &light("A"))));
