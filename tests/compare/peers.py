@@ -14,6 +14,7 @@ once cutting highlights and once blending them.
   the overshoot. What a developer makes of light is undone by a grey ramp in the same picture.
 - smooth: how far a smooth scene of a sensor of 3750 electrons (60000, four stops pushed) is from the same without noise, in
   dB of what is shown.
+- scenes, with --scenes: a sunset, a lamp in a dark room, snow in the sun and blue diodes, for the eye: PNG files in --work.
 - FILES of --raw: mean L* less that of the embedded preview; --clipped: a* and b* of what is brighter than L* 90.
 
 Needs numpy, scipy, tifffile and Pillow; rawpy for LibRaw, exiftool for previews.
@@ -204,6 +205,36 @@ def noise(develop, work):
     return -10 * np.log10(((pictures[0] - pictures[1]) ** 2).mean())
 
 
+def scenes():
+    """Names of scenes that run into clipping, and their light, linear sRGB, 1 = where white clips."""
+    height, width = 480, 720
+    y, x = np.mgrid[0:height, 0:width] / width
+    random = np.random.default_rng(3)
+    grain = 1 + 0.06 * random.standard_normal((height, width, 1))
+    near = lambda u, v: np.hypot(x - u, y - v)[..., None]
+
+    sky = np.array([0.9, 0.35, 0.1]) * np.exp(-((y - 0.45) ** 2) / 0.03)[..., None] + np.array([0.10, 0.16, 0.32]) * (1 - y)[..., None]
+    sun = np.array([1.0, 0.62, 0.25]) * (40 / (1 + np.exp((near(0.5, 0.42) - 0.03) * 400)) + 0.9 * np.exp(-near(0.5, 0.42) / 0.07))
+    ground = y > 0.5 + 0.02 * np.sin(9 * x)
+    yield "sunset", np.where(ground[..., None], 0.02 * grain * [1, 0.8, 0.7], sky + sun)
+
+    wall = 0.05 * np.array([1.0, 0.75, 0.5]) * grain
+    glow = np.array([1.0, 0.66, 0.33]) * (0.02 / (near(0.5, 0.25) ** 2 + 0.004))
+    shade = (np.abs(x - 0.5) < 0.06 + 0.25 * np.maximum(y - 0.17, 0)) & (np.abs(y - 0.25) < 0.07)
+    yield "lamp", wall + glow + np.where(shade[..., None], 6 * np.array([1.0, 0.72, 0.42]) * (1 - 3 * np.abs(x - 0.5)[..., None]), 0)
+
+    slope = 0.75 + 0.35 * np.sin(14 * x + 6 * np.sin(7 * y)) * np.cos(11 * y)
+    shadow = 1 / (1 + np.exp((slope - 0.55) * 25))[..., None]
+    snow = slope[..., None] * ((1 - shadow) * np.array([1.15, 1.10, 1.0]) + 0.45 * shadow * np.array([0.75, 0.9, 1.25]))
+    blue = np.array([0.20, 0.42, 0.85]) * (1 - 0.4 * y)[..., None]
+    yield "snow", np.where((y < 0.2 + 0.03 * np.sin(6 * x))[..., None], blue, 1.1 * snow * (1 + 0.15 * (grain - 1)))
+
+    room = 0.03 * np.array([0.8, 0.85, 1.0]) * grain
+    diodes = sum(8 * np.exp(-((near(u, 0.22) / 0.008) ** 2)) + 0.6 * np.exp(-near(u, 0.22) / 0.05) for u in np.linspace(0.1, 0.9, 9))
+    colours = np.where((x < 0.35)[..., None], [0.05, 0.12, 1.0], np.where((x < 0.65)[..., None], [0.9, 0.05, 0.8], [1.0, 0.08, 0.04]))
+    yield "diodes", room + diodes * colours
+
+
 def preview_of(raw):
     for tag in ("-JpgFromRaw", "-PreviewImage", "-OtherImage", "-ThumbnailImage"):
         out = subprocess.run(["exiftool", "-b", tag, str(raw)], capture_output=True).stdout
@@ -221,6 +252,7 @@ def main():
     parser.add_argument("--darkroot", required=True)
     parser.add_argument("--raw", type=Path, nargs="*", default=[])
     parser.add_argument("--clipped", type=Path)
+    parser.add_argument("--scenes", action="store_true")
     parser.add_argument("--work", type=Path, help="keeps the files; without it they are deleted")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
@@ -237,6 +269,13 @@ def row(arguments, name, develop, work):
         raw, slope = edge(work, blur)
         print(f" edge {blur}: MTF50 %.3f, overshoot %.1f %%;" % tuple(np.array([1, 100]) * of_edge(develop(raw, work), slope)), end="")
     print(f" smooth {noise(develop, work):.1f} dB", flush=True)
+    if arguments.scenes:
+        for scene, light in scenes():
+            camera = 0.45 * light @ (CAMERA @ SRGB / (CAMERA @ SRGB @ np.ones(3)).max()).T
+            raw = work / f"{scene}.dng"
+            write_dng(raw, exposed(bayer(np.maximum(camera, 0)), 40000, 4, 7), whole_white())
+            picture = Image.fromarray((255 * np.clip(develop(raw, work), 0, 1)).astype(np.uint8))
+            picture.save(work / f"{scene}.{name.replace(', ', '-')}.png")
     for raw in arguments.raw:
         preview = preview_of(raw)
         if preview is None:
