@@ -99,9 +99,10 @@ def write_dng(path, counts, neutral):
         (50714, "H", 1, BLACK, True),
         (50717, "H", 1, WHITE, True),
         (50721, "2i", 9, rational(CAMERA.ravel()), True),
-        (50728, "2I", 3, rational(neutral), True),
         (50778, "H", 1, 21, True),
     ]
+    if neutral is not None:
+        tags.append((50728, "2I", 3, rational(neutral), True))
     tifffile.imwrite(path, counts, photometric=32803, compression=None, extratags=tags, metadata=None, software=False)
 
 
