@@ -97,6 +97,8 @@ fn what_cannot_be_is_said_and_nothing_is_written() {
         (["--straighten", "90"], &["90", "45"]),
         (["--perspective", "1,2,3"], &["1,2,3", "corners"]),
         (["--perspective", "0,0,9,9,9,0,0,9"], &["a.dng", "convex"]),
+        (["--perspective", "vertical:1%,2"], &["vertical:1%,2", "lines"]),
+        (["--perspective", "vertical:10,20,90,22"], &["a.dng", "45 degrees"]),
         (["--resize", "100000%"], &["a.dng", "65500"]),
     ] {
         let run = desk.run(&[&["develop", "a.dng", "-o", "o.png"], &options[..]].concat());
