@@ -15,6 +15,7 @@ mod highlights;
 mod hostile;
 mod lateral;
 mod numbers;
+mod perspective;
 mod ramps;
 mod sharpen;
 mod tiles;
