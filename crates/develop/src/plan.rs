@@ -152,7 +152,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     notes.extend(laid.lens_note(capture));
     if recipe.crop == Crop::Default && capture.user_crop.is_some() {
         notes.push(
-            "the picture is cut as the file says (DefaultUserCrop); a crop of 100% shows all of it"
+            "the picture is cut to what was chosen, as the file says; a crop of 100% shows all of it"
                 .to_owned(),
         );
     }

@@ -17,6 +17,7 @@ mod lateral;
 mod numbers;
 mod perspective;
 mod ramps;
+mod resize;
 mod sharpen;
 mod tiles;
 mod truth;

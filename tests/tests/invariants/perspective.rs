@@ -98,7 +98,7 @@ fn crossings(picture: &darkroot_photo::Picture, channel: usize, upright: bool) -
 }
 
 /// Fails unless lines run straight along rows or columns, to 0.2 pixel; their distances.
-fn straight(picture: &darkroot_photo::Picture, channel: usize, upright: bool) -> f64 {
+pub(crate) fn straight(picture: &darkroot_photo::Picture, channel: usize, upright: bool) -> f64 {
     let lines = crossings(picture, channel, upright);
     assert!(lines.len() >= 2, "{} lines", lines.len());
     let means: Vec<f64> = lines

@@ -8,7 +8,7 @@ use super::Perspective;
 /// never shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Crop {
-    /// What the maker shows, or the part of it that was chosen in the camera (DNG DefaultUserCrop).
+    /// What the maker shows, or the part of it that was chosen in the camera.
     #[default]
     Default,
     /// Everything that light falls on.
