@@ -140,7 +140,7 @@ impl LookTable {
         let rgb = rgb.map(|v| if v > 0.0 { v } else { 0.0 });
         let high = rgb[0].max(rgb[1]).max(rgb[2]);
         let low = rgb[0].min(rgb[1]).min(rgb[2]);
-        if !(high > 0.0) {
+        if high <= 0.0 {
             return [0.0; 3];
         }
         let beyond = high.max(1.0);
@@ -281,7 +281,7 @@ mod tests {
         let white = fast(&table, [1.0, 0.6, 0.3]);
         let more = fast(&table, [3.0, 1.8, 0.9]);
         assert!(white.iter().zip(more).all(|(a, b)| (3.0 * a - b).abs() < 1e-5), "{white:?} {more:?}");
-        assert_eq!(fast(&table, [0.0, -1.0, f32::NAN]), [0.0; 3]);
+        assert!(fast(&table, [0.0, -1.0, f32::NAN]).iter().all(|v| v.abs() <= 0.0));
     }
 
     #[test]

@@ -12,6 +12,9 @@ const EYE: f64 = 320.0;
 /// Distance of the grid's lines, pixels of the picture of a camera that looks straight at it.
 const APART: f64 = 60.0;
 
+/// Two places on a line.
+type Line = [[f64; 2]; 2];
+
 /// How a camera was turned: degrees up, to the right and about its axis.
 #[derive(Clone, Copy)]
 struct Held {
@@ -45,7 +48,7 @@ fn middle() -> [f64; 2] {
 }
 
 /// A picture of a wall with bright lines across it, upright and level, and what a line of the wall is in it.
-fn wall(held: Held) -> (darkroot_photo::Capture, impl Fn([f64; 2], [f64; 2]) -> [[f64; 2]; 2]) {
+fn wall(held: Held) -> (darkroot_photo::Capture, impl Fn([f64; 2], [f64; 2]) -> Line) {
     let map = held.map();
     let back = map.try_inverse().unwrap();
     let [cx, cy] = middle();

@@ -129,7 +129,7 @@ fn about_the_middle(down: Option<Vector3>, right: Option<Vector3>, size: [f64; 2
     let length = |v: &Vector3| if tells { (1.0 + square * v.z * v.z).sqrt() } else { 1.0 };
     let (right, down) = (right / length(&right), down / length(&down));
     let area = right.x * down.y - right.y * down.x;
-    if !(area > 1e-3) {
+    if area <= 1e-3 || area.is_nan() {
         return None;
     }
     let (right, down) = (right / area.sqrt(), down / area.sqrt());

@@ -143,11 +143,10 @@ fn mean_of_few(
         let (mut mean, mut least, mut most) = ([0f32; PAIR], [f32::MAX; PAIR], [f32::MIN; PAIR]);
         for (j, of_row) in rows.iter().enumerate() {
             let row = &pixels[j * width + pair * PAIR..][..PAIR];
-            for i in 0..PAIR {
-                let v = row[i];
-                mean[i] += of_row * v;
-                least[i] = if v < least[i] { v } else { least[i] };
-                most[i] = if v > most[i] { v } else { most[i] };
+            for (((mean, least), most), v) in mean.iter_mut().zip(&mut least).zip(&mut most).zip(row) {
+                *mean += of_row * v;
+                *least = if v < least { *v } else { *least };
+                *most = if v > most { *v } else { *most };
             }
         }
         for (k, weight) in weights.iter().enumerate() {

@@ -196,9 +196,9 @@ impl Taps {
         }
         // Written out: as a closure over four it is done one by one.
         let [a, b, c, d] = self.across;
-        for k in 0..RUN {
+        for (k, out) in out.iter_mut().enumerate() {
             let at = STEP * k;
-            out[k] = (a * sums[at] + d * sums[at + 3]) + (b * sums[at + 1] + c * sums[at + 2]);
+            *out = (a * sums[at] + d * sums[at + 3]) + (b * sums[at + 1] + c * sums[at + 2]);
         }
         out
     }
