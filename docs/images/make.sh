@@ -8,6 +8,10 @@ develop samples/still-life.dng -o docs/images/neutral.jpg
 develop samples/still-life.dng --look vivid -o docs/images/vivid.jpg
 develop samples/still-life.dng --look flat -o docs/images/flat.jpg
 develop samples/still-life.dng --white-balance 3200K -o docs/images/3200K.jpg
+develop samples/still-life.dng --resize long:360 -o docs/images/level.jpg
+develop samples/still-life.dng --straighten 5 --crop 3:2 --resize long:360 -o docs/images/straighten.jpg
+develop samples/still-life.dng --perspective vertical:12%,5%,18%,95%,88%,5%,82%,95% --resize long:360 \
+    -o docs/images/perspective.jpg
 # A shot that is two and a half stops too bright.
 bright=$(mktemp -d)
 cargo run --release -q -p darkroot-simulate --example make_raw -- --format dng --width 720 --height 480 --stops 2.5 \

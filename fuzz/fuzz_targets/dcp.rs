@@ -18,5 +18,11 @@ fuzz_target!(|bytes: &[u8]| {
         for light in &dcp.lights {
             let _ = light.xyz([0.2, 0.4, 0.1]);
         }
+        if let Some(table) = &dcp.rendering.table {
+            let _ = table.apply([0.2, 0.4, 0.1], |v| v, |v| v);
+        }
+        if let Some(curve) = &dcp.rendering.curve {
+            let _ = curve.at(0.3);
+        }
     }
 });

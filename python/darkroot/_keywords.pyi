@@ -28,7 +28,7 @@ class Settings(TypedDict, total=False):
     chart_reference: str | os.PathLike[str] | None
     dpi: str | float | Sequence[float] | None
     white_balance: str | float | Sequence[float] | None
-    look: Literal["neutral", "vivid", "flat", "camera", "reproduction", "linear"] | None
+    look: Literal["neutral", "vivid", "flat", "camera", "dcp", "reproduction", "linear"] | None
     gamut: Literal["auto", "clip", "map"] | None
     contrast: float | None
     shadows: float | None

@@ -22,6 +22,7 @@ mod shell;
 mod usage;
 mod values;
 mod verify;
+mod version;
 
 use std::process::ExitCode;
 

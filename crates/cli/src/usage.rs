@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 
 use clap::builder::StyledStr;
-use clap::error::{ContextKind, ContextValue, Error};
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::{Command, CommandFactory, Parser};
 
 use crate::Cli;
@@ -43,6 +43,9 @@ pub(crate) fn parse() -> Cli {
 }
 
 fn end(mut error: Error, arguments: &[OsString]) -> ! {
+    if error.kind() == ErrorKind::DisplayVersion && arguments.iter().any(|argument| argument == "--long") {
+        crate::version::say_all();
+    }
     let mut all = Cli::command();
     all.build();
     in_one_line(&mut error);

@@ -60,7 +60,7 @@ impl ChosenProfile<'_> {
         let (camera, origin) = (self.profile.camera().clone(), self.profile.origin().clone());
         match Profile::new(camera, vec![calibration], origin) {
             Some(profile) => Self {
-                profile: Cow::Owned(profile),
+                profile: Cow::Owned(profile.rendered_by(self.profile.rendering().cloned())),
                 place: Cow::Owned(format!("{}, for {}", self.place, light.light.name)),
                 ..self
             },

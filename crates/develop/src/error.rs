@@ -52,6 +52,9 @@ pub enum Error {
     /// The camera's own look cannot be told.
     #[error("{0}; choose another look")]
     CameraLook(#[from] NoCameraLook),
+    /// The profile says nothing of looks.
+    #[error("has no profile that brings a tone curve or a look table along; choose another look")]
+    NoProfileLook,
     /// A frame that cannot be.
     #[error("{fault}; the picture has {width} x {height} pixels", width = size.width, height = size.height)]
     Geometry {
@@ -69,6 +72,8 @@ pub enum GeometryFault {
     Angle,
     /// Not the corners of a convex quadrangle, clockwise from the top left.
     Corners,
+    /// Lines that do not tell how the camera was held.
+    Lines,
     /// Not inside the picture.
     Crop,
     /// A corner shows what the picture has not.
@@ -86,6 +91,10 @@ impl fmt::Display for GeometryFault {
             Self::Corners => {
                 "cannot be put into perspective: its four corners must be those of a convex quadrangle, from the top left \
                  one clockwise"
+            }
+            Self::Lines => {
+                "cannot be put into perspective: lines must lean by less than 45 degrees from what they shall be, two of a kind must \
+                 be apart, and they may meet outside of the picture only"
             }
             Self::Crop => "cannot be cropped to that: it is not inside of the picture",
             Self::CropCorner => "cannot be cropped to that: a corner lies outside of the straightened picture",

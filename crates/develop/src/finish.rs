@@ -7,6 +7,7 @@ use crate::gamut::Mapping;
 use crate::grid::Grid;
 use crate::plan::Plan;
 use crate::recipe::OutputSpace;
+use crate::shown::Shown;
 use crate::transfer::{self, Sample};
 use crate::{balance, correct, exposure, gamut, highlights, lut, tally, tone};
 
@@ -81,13 +82,16 @@ fn stages(camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     highlights::whiten(&mut scene, &whitening);
     let scene = exposure::expose(scene, plan.gain);
     let primaries = &plan.primaries;
-    let shown = |scene, curve| {
-        let toned = tone::tone(scene, curve);
+    let shown = |scene, look: &Shown| {
+        let toned = match look {
+            Shown::Curve(curve) => tone::tone(scene, curve),
+            Shown::Profile(look) => tone::show(scene, look),
+        };
         plan.lut.iter().fold(toned, lut::look_up)
     };
-    match (&plan.curve, plan.gamut) {
-        (Some(curve), Mapping::Mapped) => gamut::fit(shown(scene, curve), primaries),
-        (Some(curve), _) => tally::clip(gamut::unfitted(shown(scene, curve), primaries), &plan.tally),
+    match (&plan.shown, plan.gamut) {
+        (Some(look), Mapping::Mapped) => gamut::fit(shown(scene, look), primaries),
+        (Some(look), _) => tally::clip(gamut::unfitted(shown(scene, look), primaries), &plan.tally),
         (None, Mapping::Mapped) => gamut::fit(gamut::untoned(scene, primaries), primaries),
         (None, Mapping::Clipped) => tally::clip(gamut::convert(scene, primaries), &plan.tally),
         (None, Mapping::Kept) => gamut::convert(scene, primaries),

@@ -19,7 +19,8 @@
 pub mod recipe;
 pub use recipe::{
     Balance, Bits, Crop, Demosaic, Denoise, DenoiseBy, Exposure, Flip, Gamut, Geometry, Highlights, Lens,
-    Look, Mending, Output, OutputSpace, Overlay, Points, PointsError, Recipe, Resize, Tones, Turn,
+    Lines, Look, Marks, Mending, Output, OutputSpace, Overlay, Perspective, Points, PointsError, Recipe,
+    Resize, Tones, Turn,
 };
 
 pub mod error;
@@ -75,6 +76,7 @@ pub mod lateral;
 mod neighbourhood;
 mod neutral;
 mod render;
+mod shown;
 mod tile;
 pub mod tilt;
 

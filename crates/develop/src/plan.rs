@@ -23,8 +23,8 @@ use crate::mend::{Mends, Wanted};
 use crate::noise::Noise;
 use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, Look, Mending, OutputSpace, Recipe};
 use crate::sharpen::Sharpener;
+use crate::shown::Shown;
 use crate::tally::{Clipped, Tally};
-use crate::tone::Curve;
 use crate::transfer::Encoder;
 use crate::view::Scale;
 use crate::whites::Whites;
@@ -60,7 +60,8 @@ pub struct Plan {
     pub(crate) base: Base,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
-    pub(crate) curve: Option<Curve>,
+    /// How light is shown; `None` where it is shown in proportion.
+    pub(crate) shown: Option<Shown>,
     /// What is laid over the look.
     pub(crate) lut: Option<lut::Laid>,
     pub(crate) gamut: Mapping,
@@ -125,9 +126,9 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     let camera_output = raw_output || recipe.output.space == OutputSpace::Camera;
     // What the camera rendered for display has its look already.
     let overlay = recipe.lut.as_ref();
-    let curve = Curve::of(recipe.look, &recipe.tones, overlay).filter(|_| !capture.rendered);
+    let shown = if capture.rendered { None } else { Shown::of(recipe, profile, camera_output)? };
     let reproduced = recipe.look == Look::Reproduction && !capture.rendered;
-    let linear = curve.is_none() && !reproduced;
+    let linear = shown.is_none() && !reproduced;
     let measuring = linear || camera_output && !raw_output;
     // Neither noise nor blur of the original's picture is anybody's to take away unasked.
     let as_it_is = measuring || reproduced;
@@ -151,7 +152,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     notes.extend(laid.lens_note(capture));
     if recipe.crop == Crop::Default && capture.user_crop.is_some() {
         notes.push(
-            "the picture is cut as the file says (DefaultUserCrop); a crop of 100% shows all of it"
+            "the picture is cut to what was chosen, as the file says; a crop of 100% shows all of it"
                 .to_owned(),
         );
     }
@@ -169,7 +170,13 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
-        gain: gain(analysis, recipe.exposure, curve.is_none(), &model, multipliers),
+        gain: gain(
+            analysis,
+            recipe.exposure,
+            Shown::baseline(shown.as_ref(), capture, profile),
+            &model,
+            multipliers,
+        ),
         veil: [0.0; 3],
         notes,
         base: Base {
@@ -193,8 +200,8 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         colour_model: (recipe.output.space != OutputSpace::Camera).then_some(model),
         gamut: Mapping::of(recipe.gamut, linear, reproduced),
         tally: Arc::default(),
-        lut: overlay.filter(|_| curve.is_some()).and_then(lut::Laid::of),
-        curve,
+        lut: overlay.filter(|_| shown.is_some()).and_then(lut::Laid::of),
+        shown,
         primaries: Primaries::new(&space),
         encoder: Encoder::new(transfer),
         space: recipe.output.space,
@@ -324,14 +331,7 @@ fn colours(
 }
 
 /// Factor on scene-linear light. A linear look has nothing automatic but what was asked for.
-fn gain(
-    analysis: &Analysis,
-    exposure: Exposure,
-    linear_look: bool,
-    model: &Model,
-    multipliers: [f32; 3],
-) -> f32 {
-    let baseline = if linear_look { 0.0 } else { analysis.capture().baseline_exposure };
+fn gain(analysis: &Analysis, exposure: Exposure, baseline: f64, model: &Model, multipliers: [f32; 3]) -> f32 {
     let stops =
         if exposure.auto { auto_exposure::stops(analysis.survey(), model, multipliers) } else { baseline };
     2f64.powf(exposure.stops + stops) as f32

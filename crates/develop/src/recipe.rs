@@ -2,7 +2,7 @@
 
 use darkroot_colour::RgbSpace;
 
-pub use crate::geometry::{Crop, Flip, Geometry, Lens, Resize, Turn};
+pub use crate::geometry::{Crop, Flip, Geometry, Lens, Lines, Marks, Perspective, Resize, Turn};
 pub use crate::lut::Overlay;
 pub use crate::tone::{Points, PointsError, Tones};
 
@@ -157,6 +157,8 @@ pub enum Look {
     /// As the camera rendered it: neutral with a curve and a factor on chroma that are fitted to the embedded preview
     /// ([`camera_look`](crate::camera_look)). Without that, neutral.
     Camera,
+    /// As the maker of the profile would show it: look table and tone curve of a DCP. Refused where the profile has none.
+    Profile,
     /// Colorimetric: light in proportion, colours as measured, no tone curve, no baseline exposure; neither denoised nor
     /// sharpened unless asked. What an original is reproduced with.
     Reproduction,

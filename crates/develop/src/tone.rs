@@ -22,6 +22,8 @@ pub use adjust::Tones;
 mod headroom;
 mod points;
 pub use points::{Points, PointsError};
+mod profile_look;
+pub use profile_look::{ProfileLook, show};
 
 /// The curve of a look, with what a person changed about it.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,15 +65,10 @@ const DARKEST: f32 = 1e-6;
 
 impl Curve {
     /// The curve of a look, changed, and with a table over it that is a tone curve; `None` for those that show light in
-    /// proportion.
+    /// proportion, and for that of a profile ([`ProfileLook`]).
     pub fn of(look: Look, tones: &Tones, lut: Option<&Overlay>) -> Option<Self> {
         let lut = lut.filter(|overlay| overlay.lut.is_one_curve());
-        // A metered grey is shown so that pictures are as bright as those of cameras (tests/compare/brightness.py).
-        let curve = |quarters: u8, shown_grey: f64, chroma: f32| {
-            // Solved for f(METERED_GREY) = shown_grey.
-            let t = METERED_GREY.powf(f64::from(quarters) / 4.0);
-            let k = t * (1.0 - shown_grey) / (shown_grey - t);
-            let base = Base { quarters, k: k as f32 };
+        let curve = |base: Base, chroma: f32| {
             let changed = !tones.keeps_curve() || lut.is_some();
             let table = changed.then(|| {
                 Table::of(tones, METERED_GREY, |light| {
@@ -85,10 +82,10 @@ impl Curve {
             Self { base, table, colours }
         };
         match look {
-            Look::Neutral | Look::Camera => Some(curve(7, 0.28, 1.0)),
-            Look::Vivid => Some(curve(8, 0.28, 1.15)),
-            Look::Flat => Some(curve(5, 0.24, 1.0)),
-            Look::Reproduction | Look::Linear => None,
+            Look::Neutral | Look::Camera => Some(curve(Base::neutral(), 1.0)),
+            Look::Vivid => Some(curve(Base::of(8, 0.28), 1.15)),
+            Look::Flat => Some(curve(Base::of(5, 0.24), 1.0)),
+            Look::Profile | Look::Reproduction | Look::Linear => None,
         }
     }
 
@@ -131,6 +128,19 @@ impl Colours {
 }
 
 impl Base {
+    /// The curve of an exponent, in quarters, that shows a metered grey as this display light.
+    fn of(quarters: u8, shown_grey: f64) -> Self {
+        // Solved for f(METERED_GREY) = shown_grey.
+        let t = METERED_GREY.powf(f64::from(quarters) / 4.0);
+        let k = t * (1.0 - shown_grey) / (shown_grey - t);
+        Self { quarters, k: k as f32 }
+    }
+
+    /// A metered grey is shown so that pictures are as bright as those of cameras (tests/compare/brightness.py).
+    fn neutral() -> Self {
+        Self::of(7, 0.28)
+    }
+
     #[inline(always)]
     fn at(self, scene: f32) -> f32 {
         let x = lesser(greater(scene, 0.0), BRIGHTEST);

@@ -76,7 +76,8 @@ pub struct Capture {
     pub active_area: Rect,
     /// What the maker shows, inside the active area.
     pub default_crop: Rect,
-    /// The part of that which was chosen, in the camera or by who edited the file (DNG DefaultUserCrop); `None` for all of it.
+    /// The part of that which was chosen, in the camera or by who edited the file (DNG DefaultUserCrop, or a maker's note);
+    /// `None` for all of it.
     pub user_crop: Option<Rect>,
     /// How to turn the picture upright.
     pub orientation: Orientation,

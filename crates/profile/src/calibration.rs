@@ -1,11 +1,13 @@
 //! A camera's profile: one model per light, or the camera itself; and which model serves which white.
 
+use std::sync::Arc;
+
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Xy, Xyz};
 
 use crate::camera::KnownCamera;
 use crate::camera::light::STRANGE_DUV;
-use crate::{Figures, Kind, Model};
+use crate::{Figures, Kind, Model, Rendering};
 
 /// The camera that a profile is for.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -115,6 +117,7 @@ pub struct Profile {
     camera: ProfileCamera,
     knowledge: Knowledge,
     origin: Origin,
+    rendering: Option<Arc<Rendering>>,
 }
 
 /// What a profile knows.
@@ -132,12 +135,23 @@ impl Profile {
         calibrations.sort_by(|a, b| b.light.kelvin().total_cmp(&a.light.kelvin()));
         let knowledge = Knowledge::Calibrations(calibrations);
         let some = matches!(&knowledge, Knowledge::Calibrations(all) if !all.is_empty());
-        some.then_some(Self { camera, knowledge, origin })
+        some.then_some(Self { camera, knowledge, origin, rendering: None })
     }
 
     /// A profile that is a camera: the model for the light of each photograph follows from its sensitivities.
     pub fn of_camera(camera: ProfileCamera, known: KnownCamera, origin: Origin) -> Self {
-        Self { camera, knowledge: Knowledge::Camera(Box::new(known)), origin }
+        Self { camera, knowledge: Knowledge::Camera(Box::new(known)), origin, rendering: None }
+    }
+
+    /// The same with how its maker would show its colours; nothing where that says nothing.
+    #[must_use]
+    pub fn rendered_by(self, rendering: Option<Arc<Rendering>>) -> Self {
+        Self { rendering: rendering.filter(|rendering| rendering.is_any()), ..self }
+    }
+
+    /// How its maker would show its colours, where the profile says it.
+    pub fn rendering(&self) -> Option<&Arc<Rendering>> {
+        self.rendering.as_ref()
     }
 
     /// How the camera sees, where the profile knows it.

@@ -21,6 +21,9 @@ pub use root::RootPolynomial;
 pub mod hue_plane;
 pub use hue_plane::HuePlane;
 
+pub mod rendering;
+pub use rendering::{LookTable, Rendering, ToneCurve};
+
 pub mod residual;
 pub use residual::Residual;
 

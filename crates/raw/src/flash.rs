@@ -12,8 +12,8 @@ use crate::flash_facts::{
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
 use crate::{
-    Damage, Error, Limits, TooLarge, Unknown, dng_extras, dng_jxl, dng_mends, exif, nef_packing, opcode_work,
-    opcodes,
+    Damage, Error, Limits, TooLarge, Unknown, dng_extras, dng_jxl, dng_mends, exif, maker_note, nef_packing,
+    opcode_work, opcodes,
 };
 
 /// What [`Source::decoder`] says.
@@ -286,7 +286,7 @@ fn describe(
     }
     notes.extend(tiff.map(dng_extras::notes).unwrap_or_default());
     let default_crop = rect(info.crop, size);
-    let user_crop = tiff.filter(|_| is_dng).and_then(|tiff| dng_extras::user_crop(tiff, default_crop));
+    let user_crop = tiff.and_then(|tiff| maker_note::user_crop(tiff, is_dng, default_crop));
     let white = white_level(info, &layout);
     let (calibrations, analog_balance) = calibrations(&info.color_matrices);
     let as_shot = as_shot(meta, info);

@@ -1,6 +1,8 @@
 //! Where things stand in a picture that was cropped, turned, straightened, freed of its lens or made smaller.
 
-use darkroot_develop::{Cancel, Crop, Flip, Geometry, Lens, Recipe, Resize, Scale, Turn, View};
+use darkroot_develop::{
+    Cancel, Crop, Flip, Geometry, Lens, Marks, Perspective, Recipe, Resize, Scale, Turn, View,
+};
 use darkroot_lens::Corrections;
 use darkroot_photo::correction::{Distortion, Projection, Warp};
 use darkroot_photo::{Capture, Correction, Layout, Orientation, Picture, Rect, Size};
@@ -10,7 +12,7 @@ use darkroot_tests::{
     camera, develop, exact, flat_grey, measuring, pixels, plan, rendered, rendered_in_tiles, with_light,
 };
 
-const SIZE: Size = Size { width: 300, height: 200 };
+pub(crate) const SIZE: Size = Size { width: 300, height: 200 };
 
 /// What lies in a column and row of the frame, the middle of the first pixel being (0.5, 0.5): even waves.
 fn waves(x: f64, y: f64) -> [f64; 3] {
@@ -22,7 +24,7 @@ fn waves(x: f64, y: f64) -> [f64; 3] {
 }
 
 /// A capture of something, whose camera sees linear sRGB.
-fn capture(light: impl Fn(f64, f64) -> [f64; 3]) -> Capture {
+pub(crate) fn capture(light: impl Fn(f64, f64) -> [f64; 3]) -> Capture {
     let neutral = camera(Layout::Rgb).neutral(&Exposure::default().light);
     let seen = |x: usize, y: usize| {
         let light = light(x as f64 + 0.5, y as f64 + 0.5);
@@ -32,7 +34,7 @@ fn capture(light: impl Fn(f64, f64) -> [f64; 3]) -> Capture {
 }
 
 /// The picture in balanced camera RGB, which needs no profile.
-fn developed(capture: &Capture, crop: Crop, geometry: Geometry) -> Picture {
+pub(crate) fn developed(capture: &Capture, crop: Crop, geometry: Geometry) -> Picture {
     let mut recipe = Recipe { crop, geometry, ..measuring() };
     recipe.output.space = darkroot_develop::OutputSpace::Camera;
     develop(capture, None, &recipe)
@@ -52,6 +54,10 @@ fn shows(picture: &Picture, what: &str, place: impl Fn(usize, f64, f64) -> [f64;
             assert!((seen - truth).abs() < 1.5e-3, "{what} at {x} {y}, colour {c}: {seen} for {truth}");
         }
     }
+}
+
+fn of_corners(corners: [[f64; 2]; 4]) -> Option<Perspective> {
+    Some(Perspective { by: Marks::Corners(corners), shares: false })
 }
 
 fn turned(degrees: f64, [x, y]: [f64; 2], about: [f64; 2]) -> [f64; 2] {
@@ -227,7 +233,7 @@ fn what_lensfun_knows_of_the_lens_is_undone() {
 #[test]
 fn four_corners_become_a_rectangle() {
     let corners = [[60.0, 40.0], [240.0, 25.0], [250.0, 170.0], [50.0, 160.0]];
-    let geometry = Geometry { perspective: Some(corners), ..Geometry::default() };
+    let geometry = Geometry { perspective: of_corners(corners), ..Geometry::default() };
     // Bright lines along the sides of the quadrangle.
     let near = |x: f64, y: f64| {
         let of_side = |i: usize| {
@@ -371,7 +377,7 @@ fn frames_that_cannot_be_are_refused_in_words() {
     let wrong = [
         (geometry(Geometry { straighten: 46.0, ..Geometry::default() }), "45 degrees"),
         (geometry(Geometry { straighten: f64::NAN, ..Geometry::default() }), "45 degrees"),
-        (geometry(Geometry { perspective: Some(crossed), ..Geometry::default() }), "convex"),
+        (geometry(Geometry { perspective: of_corners(crossed), ..Geometry::default() }), "convex"),
         (geometry(Geometry { resize: Resize::Share(1000.0), ..Geometry::default() }), "65500"),
         (geometry(Geometry { resize: Resize::Megapixels(f64::NAN), ..Geometry::default() }), "65500"),
         (crop(0, 0, 301, 10), "not inside"),

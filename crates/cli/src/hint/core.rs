@@ -53,6 +53,9 @@ fn file(error: &darkroot::Error) -> Option<&'static str> {
         E::Plan { source: darkroot_develop::Error::Filters { .. }, .. } => {
             Some("`darkroot inspect` still works")
         }
+        E::Plan { source: darkroot_develop::Error::NoProfileLook, .. } => {
+            Some("`--profile` takes a .dcp file that has them")
+        }
         E::OtherCamera { .. } => Some("`--profile` takes another"),
         E::Exists { .. } => Some("add `--overwrite` to replace it, or choose another `-o`"),
         E::Write { .. } => Some("`-o` takes another folder"),

@@ -97,6 +97,8 @@ fn what_cannot_be_is_said_and_nothing_is_written() {
         (["--straighten", "90"], &["90", "45"]),
         (["--perspective", "1,2,3"], &["1,2,3", "corners"]),
         (["--perspective", "0,0,9,9,9,0,0,9"], &["a.dng", "convex"]),
+        (["--perspective", "vertical:1%,2"], &["vertical:1%,2", "lines"]),
+        (["--perspective", "vertical:10,20,90,22"], &["a.dng", "45 degrees"]),
         (["--resize", "100000%"], &["a.dng", "65500"]),
     ] {
         let run = desk.run(&[&["develop", "a.dng", "-o", "o.png"], &options[..]].concat());
@@ -139,10 +141,10 @@ fn a_crop_that_the_file_says_is_honoured_and_can_be_undone() {
     capture.user_crop = Some(darkroot_photo::Rect { x: whole.x + 12, y: whole.y + 8, width: 48, height: 32 });
     desk.put("a.dng", dng::write(&capture, dng::Storage::Uncompressed));
     let run = desk.develop(&["a.dng", "-o", "cut.png"]);
-    assert!(run.err.contains("cut as the file says"), "{}", run.err);
+    assert!(run.err.contains("cut to what was chosen"), "{}", run.err);
     assert_eq!(size(&desk, "cut.png"), (48, 32));
     let run = desk.develop(&["a.dng", "-o", "all.png", "--crop", "100%"]);
-    assert!(!run.err.contains("cut as the file says"), "{}", run.err);
+    assert!(!run.err.contains("cut to what was chosen"), "{}", run.err);
     assert_eq!(size(&desk, "all.png"), (WIDTH, HEIGHT));
     let [cut, all] = ["cut.png", "all.png"].map(|name| image::open(desk.path(name)).unwrap().into_rgb8());
     let part = image::imageops::crop_imm(&all, 12, 8, 48, 32).to_image();

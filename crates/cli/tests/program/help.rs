@@ -52,6 +52,16 @@ fn the_version_goes_to_stdout() {
 }
 
 #[test]
+fn the_long_version_says_whose_measurements_are_in_the_program() {
+    let run = Desk::new().run(&["--version", "--long"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.out.starts_with(&format!("darkroot {}\n", env!("CARGO_PKG_VERSION"))));
+    for word in ["Lesser General Public License", "lensfun", "by-sa/3.0", "rawtoaces", "Apache License"] {
+        assert!(run.out.contains(word), "{word}");
+    }
+}
+
+#[test]
 fn without_a_command_there_is_help_on_stderr() {
     let run = Desk::new().run(&[]);
     assert_eq!((run.code, run.out.as_str()), (2, ""));

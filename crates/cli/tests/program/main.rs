@@ -6,6 +6,7 @@ mod answers;
 mod batch;
 mod broken;
 mod chart;
+mod dcp_look;
 mod embedded;
 mod engines;
 mod evaluate;

@@ -44,7 +44,7 @@ pub(super) fn hdr(settings: &Settings, recipe: &Recipe, format: Format) -> Resul
 /// What is about the sensor's light has no meaning for a picture that the camera rendered.
 pub(super) fn preview(settings: &Settings, recipe: &Recipe) -> Result<(), SettingsError> {
     let asks = [
-        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear | Look::Camera)),
+        ("look", matches!(recipe.look, Look::Reproduction | Look::Linear | Look::Camera | Look::Profile)),
         ("space", recipe.output.space == OutputSpace::Camera),
         ("format (DNG)", recipe.output.space == OutputSpace::Raw),
         ("profile", matches!(settings.profile, ProfileChoice::File(_))),

@@ -73,23 +73,6 @@ pub(super) const STRAIGHTEN: Setting = Setting {
     },
 };
 
-pub(super) const PERSPECTIVE: Setting = Setting {
-    name: "perspective",
-    alias: None,
-    noun: "corners",
-    kind: Kind::Text {
-        form: "off, or the corners of what shall become a rectangle, from the top left one clockwise: X,Y,X,Y,X,Y,X,Y",
-        example: "\"310,205,1720,190,1755,1280,290,1262\"",
-    },
-    default: "off",
-    group: Group::Picture,
-    placeholder: "CORNERS",
-    help: "Corners of what shall become a rectangle (a painting, a front), from the top left one clockwise: \
-           X,Y,X,Y,X,Y,X,Y in pixels of the upright picture; off",
-    changes: Changes::Picture,
-    set: |to, text| put(&mut to.recipe.geometry.perspective, perspective(text)),
-};
-
 pub(super) const LENS: Setting = Setting {
     name: "lens",
     alias: None,
@@ -279,23 +262,6 @@ fn resize(text: &str) -> Result<Resize, NotAValue> {
     }
 }
 
-/// Four corners, or off.
-fn perspective(text: &str) -> Result<Option<[[f64; 2]; 4]>, NotAValue> {
-    if text == "off" {
-        return Ok(None);
-    }
-    match numbers::<f64>(text).as_deref() {
-        Some(&[a, b, c, d, e, f, g, h]) if [a, b, c, d, e, f, g, h].iter().all(|v| v.is_finite()) => {
-            Ok(Some([[a, b], [c, d], [e, f], [g, h]]))
-        }
-        _ => Err(NotAValue::plain(
-            text,
-            "perspective",
-            "off, or four corners X,Y,X,Y,X,Y,X,Y clockwise from the top left",
-        )),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -325,16 +291,6 @@ mod tests {
         for wrong in ["", "2048", "long:0", "long:x", "0x5", "5x", "-50%", "mp:0", "mp:-1", "wide:3", "nan%"]
         {
             assert!(resize(wrong).is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn corners_are_eight_numbers() {
-        assert_eq!(perspective("off"), Ok(None));
-        let corners = [[1.0, 2.0], [3.0, 4.5], [5.0, 6.0], [7.0, 8.0]];
-        assert_eq!(perspective("1,2,3,4.5,5,6,7,8"), Ok(Some(corners)));
-        for wrong in ["1,2,3", "1,2,3,4,5,6,7,inf", "a,2,3,4,5,6,7,8"] {
-            assert!(perspective(wrong).is_err(), "{wrong}");
         }
     }
 }

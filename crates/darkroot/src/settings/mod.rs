@@ -16,6 +16,7 @@ mod check;
 mod files;
 mod frames;
 mod geometry;
+mod perspective;
 mod tones;
 mod words;
 

@@ -7,10 +7,9 @@ use super::about::{ARTIST, COPYRIGHT, METADATA, SET_TAG};
 use super::files::{CHROMA_SUBSAMPLING, HDR, PROGRESSIVE, QUALITY, TIFF_COMPRESSION, WEBP_KIND};
 use super::frames::{DARK, FLAT};
 use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
-use super::geometry::{
-    CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, PERSPECTIVE, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
-};
+use super::geometry::{CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING};
 use super::noise::{BANDING, DENOISE, DENOISE_CHROMA, DENOISE_LUMA, HOT_PIXELS};
+use super::perspective::PERSPECTIVE;
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{

@@ -57,7 +57,7 @@ pub(super) const WEBP: [Word<WebpKind>; 2] = [
     word("lossy", WebpKind::Lossy, "By the quality, with half the colour resolution"),
 ];
 pub(super) const SWITCH: [Word<bool>; 2] = [word("true", true, ""), word("false", false, "")];
-pub(super) const LOOKS: [Word<Look>; 6] = [
+pub(super) const LOOKS: [Word<Look>; 7] = [
     word("neutral", Look::Neutral, "Gentle contrast, soft highlights, colours as measured"),
     word("vivid", Look::Vivid, "More contrast and chroma"),
     word("flat", Look::Flat, "Low contrast, for further editing"),
@@ -65,6 +65,11 @@ pub(super) const LOOKS: [Word<Look>; 6] = [
         "camera",
         Look::Camera,
         "As the camera rendered it: a curve and chroma fitted to the embedded preview",
+    ),
+    word(
+        "dcp",
+        Look::Profile,
+        "As the maker of the profile in use would show it: look table and tone curve of a DCP",
     ),
     word("reproduction", Look::Reproduction, "Colorimetric, no tone curve: an original as it was measured"),
     word("linear", Look::Linear, "Strictly scene-linear, for measurement"),

@@ -2,11 +2,13 @@
 
 use darkroot_lens::Corrections;
 
+use super::Perspective;
+
 /// Which part of the frame is developed, in the upright picture. What lies outside of a picture that was straightened is
 /// never shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Crop {
-    /// What the maker shows, or the part of it that was chosen in the camera (DNG DefaultUserCrop).
+    /// What the maker shows, or the part of it that was chosen in the camera.
     #[default]
     Default,
     /// Everything that light falls on.
@@ -41,9 +43,8 @@ pub struct Geometry {
     /// Whether the lean of the picture is to be found, and undone by `straighten`. Whoever has the photograph looks for it
     /// ([`tilt`](crate::tilt)) and sets that.
     pub auto_straighten: bool,
-    /// Corners of what shall become a rectangle: top left, top right, bottom right, bottom left, each column and row in
-    /// pixels of the upright picture, before it is straightened.
-    pub perspective: Option<[[f64; 2]; 4]>,
+    /// What of the upright picture, before it is straightened, shall be upright, level or a rectangle.
+    pub perspective: Option<Perspective>,
     /// What is done about the lens.
     pub lens: Lens,
     /// What a database knows of the lens, for [`Lens::Lensfun`]. Whoever knows the photograph's metadata sets it.

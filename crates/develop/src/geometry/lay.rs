@@ -4,10 +4,10 @@ use darkroot_colour::Matrix3;
 use darkroot_lens::Corrections;
 use darkroot_photo::{Capture, Correction, Orientation, Rect, Size};
 
-use super::homography::{from_square, moved, place, scaled, turned};
+use super::homography::{moved, place, scaled, turned};
 use super::lens::LensWarp;
 use super::warp::Warp;
-use super::{Crop, Flip, Geometry, Lens, Resize, Turn};
+use super::{Crop, Flip, Geometry, Lens, Resize, Turn, perspective};
 use crate::error::{Error, GeometryFault};
 
 /// Longest side of a picture.
@@ -170,15 +170,10 @@ fn to_canvas(canvas: Size, asked: &Geometry) -> Result<Matrix3, Error> {
     }
     let middle = [canvas.width as f64 / 2.0, canvas.height as f64 / 2.0];
     let straightened = turned(-asked.straighten, middle);
-    let Some(corners) = asked.perspective else { return Ok(straightened) };
-    let wrong = Error::Geometry { fault: GeometryFault::Corners, size: canvas };
-    let from_square = from_square(corners).ok_or(wrong)?;
-    // The rectangle has the mean length of opposite sides, and the place of the corners' mean.
-    let side = |i: usize, j: usize| (corners[i][0] - corners[j][0]).hypot(corners[i][1] - corners[j][1]);
-    let (width, height) = (0.5 * (side(0, 1) + side(3, 2)), 0.5 * (side(0, 3) + side(1, 2)));
-    let mean = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 4.0);
-    let to_square = scaled(1.0 / width, 1.0 / height) * moved(0.5 * width - mean[0], 0.5 * height - mean[1]);
-    Ok(from_square * to_square * straightened)
+    let Some(asked) = &asked.perspective else { return Ok(straightened) };
+    let undone =
+        perspective::undone(asked, canvas).map_err(|fault| Error::Geometry { fault, size: canvas })?;
+    Ok(undone * straightened)
 }
 
 /// A part of the straightened picture.

@@ -9,6 +9,7 @@ mod asked;
 mod homography;
 mod lay;
 mod lens;
+mod perspective;
 mod resample;
 mod taps;
 mod vignetting;
@@ -16,6 +17,7 @@ mod warp;
 
 pub use asked::{Crop, Flip, Geometry, Lens, Resize, Turn};
 pub(crate) use lay::{Laid, lay};
+pub use perspective::{Lines, Marks, Perspective};
 pub(crate) use resample::{Scratch, resample};
 pub(crate) use vignetting::brighten;
 pub(crate) use warp::Warp;

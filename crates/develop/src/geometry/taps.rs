@@ -12,6 +12,10 @@ pub(super) const GROUP: usize = 6;
 const CRISP: f64 = 0.2;
 /// Reduction from which on it gets all of that; the more it is made smaller, the less is left of the sharpness of its pixels.
 const CRISP_FROM: f64 = 2.0;
+/// Below this reduction the kernel stays as narrow as it is: what a picture then has beyond its own half of the sampling rate is
+/// the last twenty-fifth of the frame's, and cameras leave little there. Corrected lenses zoom by as much, and a wider kernel costs
+/// twice as much.
+const NO_REDUCTION: f64 = 1.04;
 /// Blur that sharpening takes off, pixels of the smaller picture.
 const SOFT: f64 = 0.7;
 
@@ -31,7 +35,7 @@ impl Taps {
     /// For a picture in which a pixel stands for so many of those that it is made of, along each axis; `sharpening` is 1 for what
     /// suits pictures, 0 for none.
     pub(super) fn of(reduction: f64, sharpening: f64) -> Self {
-        let reduction = reduction.max(1.0);
+        let reduction = if reduction < NO_REDUCTION { 1.0 } else { reduction };
         let crisp = CRISP * sharpening * ((reduction - 1.0) / (CRISP_FROM - 1.0)).min(1.0);
         let half = (LOBES * reduction).ceil() as usize;
         let (count, padded) = (2 * half, (2 * half).next_multiple_of(GROUP));
@@ -52,17 +56,30 @@ impl Taps {
 
     /// Pixels on each side of a place that it is made of, or that are read with them.
     pub(super) fn reach(&self) -> usize {
-        self.count / 2 + GROUP
+        self.count / 2 + self.padded - self.count + 1
     }
 
     /// The first pixel that makes a place (the middle of pixel i is i + 0.5), and the weights from there on.
     #[inline(always)]
     pub(super) fn at(&self, place: f64) -> (isize, &[f32]) {
-        // In parts of a pixel; places are within a few pictures of the frame.
-        let parts = ((place - 0.5) * PHASES as f64).round() as i32 as isize;
-        let first = parts.div_euclid(PHASES as isize) + 1 - (self.count / 2) as isize;
-        let phase = parts.rem_euclid(PHASES as isize) as usize;
+        let (first, phase) = self.first(place);
         (first, &self.weights[phase * self.padded..][..self.padded])
+    }
+
+    /// As [`Self::at`], where nothing is made smaller.
+    #[inline(always)]
+    pub(super) fn few(&self, place: f64) -> Option<(isize, &[f32; GROUP])> {
+        let (first, phase) = self.first(place);
+        let all = if self.padded == GROUP { self.weights.as_chunks::<GROUP>().0 } else { &[] };
+        all.get(phase).map(|weights| (first, weights))
+    }
+
+    #[inline(always)]
+    fn first(&self, place: f64) -> (isize, usize) {
+        // In parts of a pixel, to the nearest; places are within a few pictures of the frame.
+        let parts = ((place - 0.5) * PHASES as f64 + 0.5).floor() as i32;
+        let first = (parts >> PHASES.trailing_zeros()) as isize + 1 - (self.count / 2) as isize;
+        (first, (parts & (PHASES as i32 - 1)) as usize)
     }
 }
 

@@ -116,14 +116,15 @@ impl Places {
         let nodes = |row: usize| &self.nodes[channel][row..][..self.columns];
         let (above, under) = (nodes(row), nodes(row + self.columns));
         let mix = |a: f64, b: f64, share: f64| a + share * (b - a);
-        let at = |i: usize| [0, 1].map(|axis| mix(above[i][axis], under[i][axis], below));
+        let at = |i: usize| [mix(above[i][0], under[i][0], below), mix(above[i][1], under[i][1], below)];
         let (mut x, mut places) = (x, places);
         while !places.is_empty() {
             let i = x / STEP - self.first.0;
             let (left, right) = (at(i), at(i + 1));
             let (run, rest) = places.split_at_mut((STEP - x % STEP).min(places.len()));
             for (x, place) in (x..).zip(run.iter_mut()) {
-                *place = [0, 1].map(|axis| mix(left[axis], right[axis], share(x)));
+                let along = share(x);
+                *place = [mix(left[0], right[0], along), mix(left[1], right[1], along)];
             }
             x += run.len();
             places = rest;

@@ -12,11 +12,15 @@ use darkroot_photo::{Filter, Layout, Mosaic, Size};
 
 use super::shift::cubic;
 use super::{CELL, Lateral};
+use crate::cones::{greater, lesser};
 use crate::stage::{Stage, WhenSmaller};
 
 /// Pixels that are looked at besides those that a displacement leads to: four for differences, two for green between pixels,
 /// three for green at red and blue.
 const AROUND: usize = 9;
+/// Most places of a colour side by side in a cell, and columns that are looked at for them.
+const RUN: usize = CELL / 2;
+const WIDE: usize = 2 * RUN + 4;
 /// Steps of green below which both directions count alike, squared.
 const EVEN: f32 = 1e-12;
 
@@ -66,23 +70,33 @@ pub(crate) fn align(
         vectorised(
             #[inline(always)]
             || {
-                sites.for_each_run(margins[0], |(x, y), count, [dx, dy]| {
-                    let taps = Taps::of([-dx, -dy]);
-                    for k in 0..count {
-                        let (at, site) = (y * size.width + x + 2 * k, y / 2 * columns + x / 2 + k);
-                        own[site] = samples[at];
-                        differences[site] = samples[at] - taps.at(green, size.width, at);
-                    }
-                });
-                sites.for_each_run(margins[1], |(x, y), count, [dx, dy]| {
-                    let taps = Taps::of([0.5 * dx, 0.5 * dy]);
-                    for k in 0..count {
-                        let (at, site) = (y * size.width + x + 2 * k, y / 2 * columns + x / 2 + k);
-                        let (least, most) = taps.range(own, columns, site);
-                        let sample = green[at] + taps.at(differences, columns, site);
-                        samples[at] = sample.max(least).min(most);
-                    }
-                });
+                sites.for_each_run(
+                    margins[0],
+                    #[inline(always)]
+                    |(x, y): (usize, usize), count: usize, [dx, dy]: [f64; 2]| {
+                        let taps = Taps::of([-dx, -dy]);
+                        let (at, site) = (y * size.width + x, y / 2 * columns + x / 2);
+                        let shifted = taps.run::<2>(green, size.width, (at, count));
+                        for (k, green) in shifted.iter().enumerate().take(count) {
+                            own[site + k] = samples[at + 2 * k];
+                            differences[site + k] = samples[at + 2 * k] - green;
+                        }
+                    },
+                );
+                sites.for_each_run(
+                    margins[1],
+                    #[inline(always)]
+                    |(x, y): (usize, usize), count: usize, [dx, dy]: [f64; 2]| {
+                        let taps = Taps::of([0.5 * dx, 0.5 * dy]);
+                        let (at, site) = (y * size.width + x, y / 2 * columns + x / 2);
+                        let shifted = taps.run::<1>(differences, columns, (site, count));
+                        let (least, most) = taps.ranges(own, columns, (site, count));
+                        for k in 0..count {
+                            let sample = green[at + 2 * k] + shifted[k];
+                            samples[at + 2 * k] = sample.max(least[k]).min(most[k]);
+                        }
+                    },
+                );
             },
         );
     }
@@ -158,6 +172,62 @@ impl Taps {
         (a + d) + (b + c)
     }
 
+    /// As [`Self::at`] for so many values from one on, `STEP` apart. What columns have is shared by neighbours.
+    #[inline(always)]
+    fn run<const STEP: usize>(
+        &self,
+        values: &[f32],
+        width: usize,
+        (at, count): (usize, usize),
+    ) -> [f32; RUN] {
+        let mut out = [0f32; RUN];
+        let first = (at as isize + self.left + self.top * width as isize) as usize;
+        let Some(rows) = values.get(first..first + 3 * width + WIDE) else {
+            for (k, out) in out.iter_mut().enumerate().take(count) {
+                *out = self.at(values, width, at + STEP * k);
+            }
+            return out;
+        };
+        let mut sums = [0f32; WIDE];
+        for (j, weight) in self.down.iter().enumerate() {
+            for (sum, v) in sums.iter_mut().zip(&rows[j * width..][..WIDE]) {
+                *sum += weight * v;
+            }
+        }
+        // Written out: as a closure over four it is done one by one.
+        let [a, b, c, d] = self.across;
+        for (k, out) in out.iter_mut().enumerate() {
+            let at = STEP * k;
+            *out = (a * sums[at] + d * sums[at + 3]) + (b * sums[at + 1] + c * sums[at + 2]);
+        }
+        out
+    }
+
+    /// As [`Self::range`] for so many values side by side, from one on.
+    #[inline(always)]
+    fn ranges(&self, values: &[f32], width: usize, (at, count): (usize, usize)) -> ([f32; RUN], [f32; RUN]) {
+        let (mut least, mut most) = ([0f32; RUN], [0f32; RUN]);
+        let first = (at as isize + self.left + self.top * width as isize) as usize;
+        let Some(rows) = values.get(first..first + 3 * width + RUN + 4) else {
+            for k in 0..count {
+                (least[k], most[k]) = self.range(values, width, at + k);
+            }
+            return (least, most);
+        };
+        let (mut low, mut high) = ([f32::INFINITY; RUN + 4], [f32::NEG_INFINITY; RUN + 4]);
+        for j in 0..4 {
+            for ((low, high), &v) in low.iter_mut().zip(&mut high).zip(&rows[j * width..][..RUN + 4]) {
+                *low = if v < *low { v } else { *low };
+                *high = if v > *high { v } else { *high };
+            }
+        }
+        for k in 0..RUN {
+            least[k] = lesser(lesser(low[k], low[k + 1]), lesser(low[k + 2], low[k + 3]));
+            most[k] = greater(greater(high[k], high[k + 1]), greater(high[k + 2], high[k + 3]));
+        }
+        (least, most)
+    }
+
     /// The smallest and the largest of the values that [`Self::at`] looks at.
     #[inline(always)]
     fn range(&self, values: &[f32], width: usize, at: usize) -> (f32, f32) {
@@ -212,6 +282,35 @@ mod tests {
 
     use super::super::Radial;
     use super::*;
+
+    #[test]
+    fn a_run_is_what_its_values_are_to_the_bit() {
+        let mut random = 1u32;
+        let mut next = || {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (random >> 8) as f32 / (1 << 24) as f32
+        };
+        let (width, height) = (61, 23);
+        let values: Vec<f32> = (0..width * height).map(|_| next()).collect();
+        for by in [[0.0, 0.0], [0.3, -0.8], [-2.6, 1.4], [1.999, 2.5]] {
+            let taps = Taps::of(by);
+            for (row, column, count) in [(6, 6, 8), (11, 20, 3), (15, 40, 8), (17, 47, 1), (17, 44, 5)] {
+                let at = row * width + column;
+                let (one, two) =
+                    (taps.run::<1>(&values, width, (at, count)), taps.run::<2>(&values, width, (at, count)));
+                let (least, most) = taps.ranges(&values, width, (at, count));
+                for k in 0..count {
+                    assert_eq!(one[k].to_bits(), taps.at(&values, width, at + k).to_bits());
+                    assert_eq!(two[k].to_bits(), taps.at(&values, width, at + 2 * k).to_bits());
+                    let range = taps.range(&values, width, at + k);
+                    assert_eq!(
+                        (least[k].to_bits(), most[k].to_bits()),
+                        (range.0.to_bits(), range.1.to_bits())
+                    );
+                }
+            }
+        }
+    }
 
     #[test]
     fn no_red_is_invented_beside_green_that_is_clipped() {

@@ -95,8 +95,10 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// What a curve shows of light after `tones` changed it about `grey`.
-    pub(super) fn of(tones: &Tones, grey: f64, curve: impl Fn(f32) -> f32) -> Self {
+    /// What a curve shows of light after `tones` changed it about `grey`. The curve is asked for no light first, then for more and
+    /// more.
+    pub(super) fn of(tones: &Tones, grey: f64, mut curve: impl FnMut(f32) -> f32) -> Self {
+        let black = curve(0.0) / tones.headroom.exp2();
         let count = ((POWERS.1 - POWERS.0) as usize) << BITS;
         let mut last = f64::NEG_INFINITY;
         let mut headroom = (tones.headroom > 0.0).then(|| Headroom::of(tones.headroom, grey));
@@ -110,7 +112,6 @@ impl Table {
             let shown = curve(light as f32);
             headroom.as_mut().map_or(shown, |headroom| headroom.at(light, shown))
         };
-        let black = curve(0.0) / tones.headroom.exp2();
         Self { entries: (0..=count).map(entry).collect(), black }
     }
 

@@ -60,12 +60,26 @@
 //! de_uv = [0.9, 0.7, 2.2, 3.0]
 //! ```
 //!
+//! One of both that says how its maker would show colours, as a DCP does, has version 3 and:
+//!
+//! ```toml
+//! [rendering]
+//! exposure = 0.0           # stops
+//! curve = [[0.0, 0.0], [0.1, 0.2], [1.0, 1.0]]  # optional: points of a tone curve over linear light
+//!
+//! [rendering.look]         # optional: a table over hue, saturation and value of linear ProPhoto RGB
+//! divisions = [1, 2, 1]    # numbers of hues, saturations and values
+//! coded = false            # whether values count as the curve of sRGB has them
+//! nodes = [[0.0, 1.0, 1.0], [5.0, 1.1, 1.0]]    # degrees, factor of saturation, factor of value; the saturation fastest
+//! ```
+//!
 //! Which parts a model has follows from its name; see [`crate::Kind`].
 
 mod fault;
 pub use fault::{CalibrationFault, SensitivitiesFault};
 
 mod read;
+mod rendering;
 mod write;
 
 pub use read::parse;
@@ -83,7 +97,7 @@ pub enum Error {
     },
     /// Another version of the format.
     #[error(
-        "has version {found} of the profile format, this program reads versions 1 and 2; get a newer Darkroot"
+        "has version {found} of the profile format, this program reads versions 1 to 3; get a newer Darkroot"
     )]
     Version {
         /// The version in the file.
@@ -106,6 +120,11 @@ pub enum Error {
     /// Sensitivities that cannot be those of a camera.
     #[error("has unusable sensitivities: {0}")]
     Sensitivities(SensitivitiesFault),
+    /// A rendering that cannot be.
+    #[error(
+        "has an unusable [rendering]: its curve or its table is in disorder, or a value is no finite number"
+    )]
+    Rendering,
     /// No calibration at all.
     #[error("has neither a [[calibration]] nor [sensitivities]; a profile needs one of both")]
     Empty,
@@ -119,6 +138,8 @@ const FORMAT: &str = "darkroot profile";
 const VERSION: i64 = 1;
 /// Version of a profile that is a camera.
 const CAMERA_VERSION: i64 = 2;
+/// Version of a profile, of either kind, that says how its maker would show colours.
+const RENDERING_VERSION: i64 = 3;
 /// What balanced RGB and XYZ mean in every profile of this version.
 const WHITE: &str = "(1,1,1) is the white of the light; XYZ relative to D50 by Bradford";
 
@@ -179,6 +200,23 @@ mod tests {
         assert_eq!(read, sample());
         // Equality takes -0 for 0; the text does not.
         assert_eq!(format(&read), format(&sample()));
+    }
+
+    #[test]
+    fn how_its_maker_would_show_colours_survives_too() {
+        let nodes = (0..12).map(|i| [0.1 * i as f32, 1.0 + 1e-7, 1.0 / 3.0]).collect();
+        let rendering = Rendering {
+            exposure: -0.35,
+            table: LookTable::new([2, 3, 2], true, nodes),
+            curve: ToneCurve::new(vec![[0.0, 0.0], [1.0 / 3.0, 0.5], [1.0, 1.0]]),
+        };
+        assert!(rendering.table.is_some() && rendering.curve.is_some());
+        let profile = sample().rendered_by(Some(rendering.into()));
+        let text = format(&profile);
+        assert!(text.contains("version = 3"));
+        assert_eq!(parse(&text).unwrap(), profile);
+        assert_eq!(parse(&text.replacen("[2, 3, 2]", "[2, 3, 3]", 1)), Err(Error::Rendering));
+        assert_eq!(sample().rendered_by(Some(Rendering::default().into())), sample());
     }
 
     #[test]

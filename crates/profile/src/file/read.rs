@@ -1,11 +1,15 @@
 //! From the text of a profile file to a profile.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use darkroot_colour::{Matrix3, Xy, Xyz};
 use serde::Deserialize;
 
-use super::{CAMERA_VERSION, CalibrationFault, Error, FORMAT, SensitivitiesFault, VERSION, WHITE};
+use super::rendering::{self, RenderingTable};
+use super::{
+    CAMERA_VERSION, CalibrationFault, Error, FORMAT, RENDERING_VERSION, SensitivitiesFault, VERSION, WHITE,
+};
 use crate::camera::{Judged, KnownCamera, known};
 use crate::residual::Centre;
 use crate::{
@@ -25,6 +29,7 @@ struct File {
     #[serde(default)]
     calibration: Vec<CalibrationTable>,
     sensitivities: Option<SensitivitiesTable>,
+    rendering: Option<RenderingTable>,
 }
 
 #[derive(Deserialize)]
@@ -143,7 +148,7 @@ pub fn parse(text: &str) -> Result<Profile, Error> {
             detail: format!("its format is `{}`, not `{FORMAT}`", short(&head.format)),
         });
     }
-    if head.version != VERSION && head.version != CAMERA_VERSION {
+    if ![VERSION, CAMERA_VERSION, RENDERING_VERSION].contains(&head.version) {
         return Err(Error::Version { found: head.version });
     }
     let file: File = toml::from_str(text).map_err(syntax)?;
@@ -155,14 +160,19 @@ pub fn parse(text: &str) -> Result<Profile, Error> {
     let camera =
         ProfileCamera { make: file.camera.make, model: file.camera.model, aliases: file.camera.aliases };
     let origin = origin(file.origin);
-    match file.sensitivities {
+    let rendering = match file.rendering {
+        Some(table) => Some(Arc::new(rendering::read(table).ok_or(Error::Rendering)?)),
+        None => None,
+    };
+    let profile = match file.sensitivities {
         Some(_) if !calibrations.is_empty() => Err(Error::Both),
         Some(table) => {
             let known = known_camera(table).map_err(Error::Sensitivities)?;
             Ok(Profile::of_camera(camera, known, origin))
         }
         None => Profile::new(camera, calibrations, origin).ok_or(Error::Empty),
-    }
+    };
+    Ok(profile?.rendered_by(rendering))
 }
 
 fn known_camera(table: SensitivitiesTable) -> Result<KnownCamera, SensitivitiesFault> {

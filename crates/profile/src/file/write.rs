@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{CAMERA_VERSION, FORMAT, VERSION, WHITE};
+use super::{CAMERA_VERSION, FORMAT, RENDERING_VERSION, VERSION, WHITE, rendering};
 use crate::camera::{Judged, KnownCamera};
 use crate::{Calibration, Errors, Model, Origin, Profile, Summary, polynomial};
 
@@ -10,7 +10,11 @@ use crate::{Calibration, Errors, Model, Origin, Profile, Summary, polynomial};
 pub fn format(profile: &Profile) -> String {
     let camera = profile.camera();
     let aliases: Vec<String> = camera.aliases.iter().map(|a| quoted(a)).collect();
-    let version = if profile.known_camera().is_some() { CAMERA_VERSION } else { VERSION };
+    let version = match (profile.rendering(), profile.known_camera()) {
+        (Some(_), _) => RENDERING_VERSION,
+        (None, Some(_)) => CAMERA_VERSION,
+        (None, None) => VERSION,
+    };
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(
@@ -26,6 +30,9 @@ pub fn format(profile: &Profile) -> String {
     match profile.known_camera() {
         Some(known) => write_sensitivities(&mut text, known),
         None => profile.calibrations().iter().for_each(|c| write_calibration(&mut text, c)),
+    }
+    if let Some(rendering) = profile.rendering() {
+        rendering::write(&mut text, rendering);
     }
     text
 }

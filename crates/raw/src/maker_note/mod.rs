@@ -3,6 +3,9 @@
 //! A note is a directory of the maker's own numbers. Where it begins, and what its offsets count from, differs from maker to
 //! maker.
 
+mod aspect;
+pub(crate) use aspect::user_crop;
+
 use darkroot_photo::metadata::{Directory as Place, Metadata, Value, tag};
 
 use crate::nikon_note::{self, MAKER_NOTE};
@@ -79,8 +82,8 @@ fn kept_note<'a>(file: &'a [u8], place: usize, data: &[u8]) -> Option<Note<'a>> 
     None
 }
 
-/// What the note of a maker says, as fields of Exif.
-fn fields(note: &Note<'_>, make: &str) -> Option<Vec<(u16, Value)>> {
+/// The directory of a maker's note, and what its offsets count in.
+fn directory<'a>(note: &Note<'a>, make: &str) -> Option<(Directories<'a>, Directory)> {
     let head = note.bytes.get(note.start..)?;
     let within = |base: usize, little_endian, at| {
         Directories::one(note.bytes.get(note.start + base..)?, little_endian, at)
@@ -90,38 +93,48 @@ fn fields(note: &Note<'_>, make: &str) -> Option<Vec<(u16, Value)>> {
         Directories::one(note.bytes, note.little_endian, note.start.checked_add(from_start)?)
     };
     let order = |at: usize| head.get(at..at + 2).map(|order| order == b"II");
-    if make.starts_with("nikon") {
-        let (tiff, directory) = match head.starts_with(b"Nikon\0") {
-            true => {
-                let tiff = nikon_note::inside(head)?;
-                let first = tiff.all.first()?.clone();
-                (tiff, first)
+    match make {
+        make if make.starts_with("nikon") && head.starts_with(b"Nikon\0") => {
+            let tiff = nikon_note::inside(head)?;
+            let first = tiff.all.first()?.clone();
+            Some((tiff, first))
+        }
+        make if is_olympus(make) => {
+            if head.starts_with(b"OLYMPUS\0") {
+                within(0, order(8)?, 12)
+            } else if head.starts_with(b"OM SYSTEM\0") {
+                within(0, order(12)?, 16)
+            } else {
+                of_file(8)
             }
-            false => of_file(0)?,
-        };
-        return Some(nikon(&tiff, &directory));
-    }
-    if make.starts_with("olympus") || make.starts_with("om digital") {
-        let (tiff, directory) = if head.starts_with(b"OLYMPUS\0") {
-            within(0, order(8)?, 12)?
-        } else if head.starts_with(b"OM SYSTEM\0") {
-            within(0, order(12)?, 16)?
-        } else {
-            of_file(8)?
-        };
-        return Some(olympus(&tiff, &directory));
-    }
-    let (start, texts): (usize, &[(u16, u16)]) = match make {
-        make if make.starts_with("canon") => (0, &[(0x0095, tag::LENS_MODEL)]),
-        make if make.starts_with("panasonic") && head.starts_with(b"Panasonic\0") => {
-            (12, &[(0x0051, tag::LENS_MODEL), (0x0052, LENS)])
         }
-        make if make.starts_with("sony") => {
-            (if head.starts_with(b"SONY ") { 12 } else { 0 }, &[(0x2031, BODY)])
+        make if make.starts_with("panasonic") => {
+            if head.starts_with(b"Panasonic\0") {
+                of_file(12)
+            } else {
+                None
+            }
         }
-        _ => return None,
+        make if make.starts_with("sony") => of_file(if head.starts_with(b"SONY ") { 12 } else { 0 }),
+        make if make.starts_with("canon") || make.starts_with("nikon") => of_file(0),
+        _ => None,
+    }
+}
+
+fn is_olympus(make: &str) -> bool {
+    make.starts_with("olympus") || make.starts_with("om digital")
+}
+
+/// What the note of a maker says, as fields of Exif.
+fn fields(note: &Note<'_>, make: &str) -> Option<Vec<(u16, Value)>> {
+    let (tiff, directory) = directory(note, make)?;
+    let texts: &[(u16, u16)] = match make {
+        make if make.starts_with("nikon") => return Some(nikon(&tiff, &directory)),
+        make if is_olympus(make) => return Some(olympus(&tiff, &directory)),
+        make if make.starts_with("panasonic") => &[(0x0051, tag::LENS_MODEL), (0x0052, LENS)],
+        make if make.starts_with("sony") => &[(0x2031, BODY)],
+        _ => &[(0x0095, tag::LENS_MODEL)],
     };
-    let (tiff, directory) = of_file(start)?;
     let mut known = texts_of(&tiff, &directory, texts);
     if make.starts_with("canon") {
         // A number, shown with ten digits as it stands on the camera.
@@ -162,14 +175,15 @@ fn lens_of_numbers(pairs: [(u32, u32); 4]) -> Option<String> {
 /// The directory of the equipment lies below the note's.
 fn olympus(tiff: &Directories<'_>, directory: &Directory) -> Vec<(u16, Value)> {
     const EQUIPMENT: u16 = 0x2010;
-    let entry = directory.entries.iter().find(|entry| entry.tag == EQUIPMENT);
-    // In older cameras it is the value itself.
-    let below = entry.and_then(|entry| match entry.kind {
-        7 => tiff.directory_at(entry.place()),
-        _ => tiff.below(directory, EQUIPMENT),
-    });
+    let below = below_olympus(tiff, directory, EQUIPMENT);
     let wanted = [(0x0101, BODY), (0x0202, LENS), (0x0203, tag::LENS_MODEL)];
     below.map_or_else(Vec::new, |equipment| texts_of(tiff, &equipment, &wanted))
+}
+
+/// A directory below that of Olympus' note. In older cameras it is the value itself.
+fn below_olympus(tiff: &Directories<'_>, directory: &Directory, number: u16) -> Option<Directory> {
+    let entry = directory.entries.iter().find(|entry| entry.tag == number)?;
+    if entry.kind == 7 { tiff.directory_at(entry.place()) } else { tiff.below(directory, number) }
 }
 
 /// Texts of a note, as fields.

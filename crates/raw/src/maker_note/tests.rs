@@ -1,7 +1,7 @@
 use super::*;
 
 /// A directory in little endian, its values after it, as it lies at `at`.
-fn directory(at: usize, entries: &[(u16, u16, u32, &[u8])]) -> Vec<u8> {
+pub(super) fn directory(at: usize, entries: &[(u16, u16, u32, &[u8])]) -> Vec<u8> {
     let mut out = (entries.len() as u16).to_le_bytes().to_vec();
     let mut values = Vec::new();
     let values_at = at + 2 + 12 * entries.len() + 4;
@@ -21,7 +21,7 @@ fn directory(at: usize, entries: &[(u16, u16, u32, &[u8])]) -> Vec<u8> {
 }
 
 /// A TIFF structure with a maker and a note, whose offset is given to `note`.
-fn file(make: &str, note: impl Fn(usize) -> Vec<u8>) -> Vec<u8> {
+pub(super) fn file(make: &str, note: impl Fn(usize) -> Vec<u8>) -> Vec<u8> {
     let make = [make.as_bytes(), &[0]].concat();
     let image_at = 8;
     let exif_at = image_at + 2 + 2 * 12 + 4 + make.len();
@@ -46,7 +46,7 @@ fn names(metadata: &Metadata) -> [Option<&str>; 3] {
     [tag::LENS_MODEL, BODY, LENS].map(|number| metadata.text(Place::Exif, number))
 }
 
-fn longs(numbers: &[u32]) -> Vec<u8> {
+pub(super) fn longs(numbers: &[u32]) -> Vec<u8> {
     numbers.iter().flat_map(|n| n.to_le_bytes()).collect()
 }
 

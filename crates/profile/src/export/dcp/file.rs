@@ -16,9 +16,12 @@ pub(super) mod tag {
     pub(in super::super) const EMBED_POLICY: u16 = 50941;
     pub(in super::super) const COPYRIGHT: u16 = 50942;
     pub(in super::super) const FORWARD_MATRIX: [u16; 2] = [50964, 50965];
-    pub(in super::super) const LOOK: u16 = 50981;
+    pub(in super::super) const LOOK_DIMENSIONS: u16 = 50981;
+    pub(in super::super) const LOOK: u16 = 50982;
     pub(in super::super) const MAP_ENCODING: u16 = 51107;
+    pub(in super::super) const LOOK_ENCODING: u16 = 51108;
     pub(in super::super) const BLACK_RENDER: u16 = 51110;
+    pub(in super::super) const EXPOSURE_OFFSET: u16 = 51109;
     pub(in super::super) const THIRD_LIGHT: u16 = 52529;
 }
 

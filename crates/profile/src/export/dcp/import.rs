@@ -1,5 +1,7 @@
 //! A DCP as a Darkroot profile: a matrix for each hue near grey, and a smooth function of chromaticity for the rest.
 
+use std::sync::Arc;
+
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use nalgebra::DMatrix;
 
@@ -49,6 +51,7 @@ pub fn import(bytes: &[u8]) -> Result<Imported, Error> {
     let (calibrations, deviations): (Vec<_>, Vec<Deviation>) = both.into_iter().unzip();
     let origin = Origin { summary: summary(&dcp, &deviations), ..Origin::default() };
     let profile = Profile::new(camera_of(&dcp.camera), calibrations, origin).ok_or(DcpFault::NoColours)?;
+    let profile = profile.rendered_by(Some(Arc::new(dcp.rendering)));
     Ok(Imported { profile, deviations })
 }
 
@@ -74,6 +77,12 @@ fn summary(dcp: &Dcp, deviations: &[Deviation]) -> String {
     let mean = deviations.iter().map(|d| d.de2000.mean).fold(0.0, f64::max);
     let max = deviations.iter().map(|d| d.de2000.max).fold(0.0, f64::max);
     let mut text = format!("DCP \"{}\", dE2000 from it mean {mean:.2}, max {max:.2} in sRGB", dcp.name);
+    let looks =
+        [(dcp.rendering.curve.is_some(), "tone curve"), (dcp.rendering.table.is_some(), "look table")];
+    let looks: Vec<&str> = looks.into_iter().filter(|(there, _)| *there).map(|(_, what)| what).collect();
+    if !looks.is_empty() {
+        text += &format!("; with a {} for the look that takes them", looks.join(" and a "));
+    }
     if !dcp.left_out.is_empty() {
         text += &format!("; without {}", dcp.left_out.join(", "));
     }

@@ -21,7 +21,7 @@ use darkroot_colour::temperature::{daylight_xy, planckian_xy};
 use darkroot_colour::{Matrix3, RgbSpace, Vector3, Xyz, white};
 
 use super::{DcpLimit, Error};
-use crate::{Calibration, Light, Model, Profile};
+use crate::{Calibration, Light, Model, Profile, Rendering};
 
 /// What a DCP says, for one light or two.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +32,8 @@ pub struct Dcp {
     pub name: String,
     /// One or two lights, the warmer first.
     pub lights: Vec<DcpLight>,
+    /// Tone curve, look table and exposure; nothing where the file has none of both. It is read, and never written.
+    pub rendering: Rendering,
     /// What the file has besides, in words.
     pub left_out: Vec<String>,
 }
@@ -87,6 +89,7 @@ impl Dcp {
             name: format!("Darkroot {camera} {}", names.join(" ")),
             camera,
             lights,
+            rendering: Rendering::default(),
             left_out: Vec::new(),
         })
     }

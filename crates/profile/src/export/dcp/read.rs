@@ -6,6 +6,10 @@ use darkroot_colour::{Matrix3, Vector3, white};
 use super::file::{kind, tag};
 use super::{Dcp, DcpLight, HueSatMap, light_of};
 use crate::export::{DcpFault, Error};
+use crate::{LookTable, Rendering, ToneCurve};
+
+/// Most stops by which a DCP may change exposure.
+const MOST_STOPS: f64 = 10.0;
 
 /// Reads a DCP.
 pub(super) fn read(bytes: &[u8]) -> Result<Dcp, Error> {
@@ -21,6 +25,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Dcp, Error> {
         camera: file.text(tag::CAMERA).ok_or(DcpFault::NoCamera)?,
         name: file.text(tag::NAME).unwrap_or_default(),
         lights: lights.ok_or(DcpFault::Light)?,
+        rendering: file.rendering(),
         left_out: file.left_out(),
     })
 }
@@ -54,12 +59,12 @@ impl<'a> File<'a> {
     /// What a Darkroot profile has no place for, in words.
     fn left_out(&self) -> Vec<String> {
         let mut words = Vec::new();
-        for (tag, what) in [
-            (tag::LOOK, "its look table"),
-            (tag::TONE_CURVE, "its tone curve"),
-            (tag::THIRD_LIGHT, "its third light"),
+        for (is_out, what) in [
+            (self.has(tag::LOOK) && self.look().is_none(), "its look table, which is unusable"),
+            (self.has(tag::TONE_CURVE) && self.curve().is_none(), "its tone curve, which is unusable"),
+            (self.has(tag::THIRD_LIGHT), "its third light"),
         ] {
-            if self.has(tag) {
+            if is_out {
                 words.push(what.to_owned());
             }
         }
@@ -69,6 +74,26 @@ impl<'a> File<'a> {
             words.push(format!("all but one of the {layers} layers of its table"));
         }
         words
+    }
+
+    /// How its maker would show colours, as far as that is usable.
+    fn rendering(&self) -> Rendering {
+        let exposure = self.fractions(tag::EXPOSURE_OFFSET).and_then(|all| all.first().copied());
+        let exposure = exposure.filter(|stops| stops.abs() <= MOST_STOPS).unwrap_or(0.0);
+        Rendering { exposure, table: self.look(), curve: self.curve() }
+    }
+
+    fn curve(&self) -> Option<ToneCurve> {
+        let numbers: Vec<f64> = self.floats(tag::TONE_CURVE)?.map(f64::from).collect();
+        ToneCurve::new(numbers.chunks_exact(2).map(|p| [p[0], p[1]]).collect())
+    }
+
+    fn look(&self) -> Option<LookTable> {
+        let divisions: [usize; 3] = self.integers(tag::LOOK_DIMENSIONS)?.try_into().ok()?;
+        let numbers: Vec<f32> = self.floats(tag::LOOK)?.collect();
+        let nodes = numbers.chunks_exact(3).map(|n| [n[0], n[1], n[2]]).collect();
+        let coded = self.integers(tag::LOOK_ENCODING).is_some_and(|e| e == [1]);
+        LookTable::new(divisions, coded, nodes)
     }
 
     /// Whether there is an entry, be its values usable or not.
@@ -119,20 +144,28 @@ impl<'a> File<'a> {
     }
 
     fn matrix(&self, tag: u16) -> Option<Matrix3> {
+        let numbers = self.fractions(tag)?;
+        (numbers.len() == 9).then(|| Matrix3::from_row_slice(&numbers))
+    }
+
+    /// Signed fractions, all of them finite.
+    fn fractions(&self, tag: u16) -> Option<Vec<f64>> {
         let (kind, bytes) = self.entry(tag)?;
         let integers: Vec<f64> = self.numbers::<4>(bytes).map(|b| i32::from_le_bytes(b).into()).collect();
         let numbers: Vec<f64> = integers.chunks_exact(2).map(|f| f[0] / f[1]).collect();
-        let sound =
-            kind == kind::SIGNED_RATIONAL && numbers.len() == 9 && numbers.iter().all(|v| v.is_finite());
-        sound.then(|| Matrix3::from_row_slice(&numbers))
+        (kind == kind::SIGNED_RATIONAL && numbers.iter().all(|v| v.is_finite())).then_some(numbers)
+    }
+
+    fn floats(&self, tag: u16) -> Option<impl Iterator<Item = f32> + 'a> {
+        let (kind, bytes) = self.entry(tag)?;
+        (kind == kind::FLOAT).then(|| self.numbers::<4>(bytes).map(f32::from_le_bytes))
     }
 
     /// A table; of several layers the one for middle grey.
     fn map(&self, tag: u16) -> Option<HueSatMap> {
         let dimensions = self.integers(tag::MAP_DIMENSIONS)?;
         let [hues, saturations, layers] = dimensions[..] else { return None };
-        let (kind, bytes) = self.entry(tag)?;
-        let numbers: Vec<f64> = self.numbers::<4>(bytes).map(|b| f32::from_le_bytes(b).into()).collect();
+        let numbers: Vec<f64> = self.floats(tag)?.map(f64::from).collect();
         let nodes: Vec<[f64; 3]> = numbers.chunks_exact(3).map(|n| [n[0], n[1], n[2]]).collect();
         let layer = hues.checked_mul(saturations).filter(|n| n.checked_mul(layers) == Some(nodes.len()))?;
         // 0.18, as it is or with the curve of sRGB.
@@ -140,7 +173,7 @@ impl<'a> File<'a> {
         let middle = if coded { 0.46 } else { 0.18 };
         let first = (middle * layers.checked_sub(1)? as f64).round() as usize * layer;
         let nodes = nodes.get(first..first + layer)?.to_vec();
-        HueSatMap::new(hues, saturations, nodes).filter(|_| kind == kind::FLOAT)
+        HueSatMap::new(hues, saturations, nodes)
     }
 
     fn short(&self, at: usize) -> Option<u16> {
