@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::recipe::OutputSpace;
 use crate::shown::Shown;
 use crate::transfer::{self, Sample};
-use crate::{balance, correct, exposure, gamut, highlights, lut, tally, tone};
+use crate::{balance, correct, exposure, gamut, highlights, local_tone, lut, tally, tone};
 
 /// Pixels that go through the stages together.
 const PIXELS: usize = 2048;
@@ -46,7 +46,9 @@ impl<T: Sample> Finish<T> {
                     out.copy_from_slice(&plane[at..][..size.width]);
                 }
             }
-            let display = stages(strip, plan);
+            let place =
+                |i: usize| grid.share(&plan.base, rect.x + i % size.width, rect.y + top + i / size.width);
+            let display = stages(strip, plan, place);
             for y in 0..size.height {
                 let planes = display.planes().map(|plane| &plane[y * size.width..][..size.width]);
                 let start =
@@ -69,8 +71,8 @@ impl<T: Sample> Finish<T> {
     }
 }
 
-/// All stages of one pixel but the last.
-fn stages(camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
+/// All stages of one pixel but the last. `place` tells where a pixel lies in the active area, by its number.
+fn stages(camera: Rgb<CameraSpace>, plan: &Plan, place: impl Fn(usize) -> [f32; 2]) -> Rgb<Display> {
     let Some(model) = &plan.model else {
         if plan.space == OutputSpace::Raw {
             return balance::undo(camera, plan.base.multipliers).into_space();
@@ -80,6 +82,9 @@ fn stages(camera: Rgb<CameraSpace>, plan: &Plan) -> Rgb<Display> {
     let whitening = highlights::Whitening::of(&camera, &plan.base.highlights);
     let mut scene = correct::correct(exposure::darken(camera, plan.veil), model);
     highlights::whiten(&mut scene, &whitening);
+    if let Some(local) = &plan.local_tone {
+        local_tone::brighten(&mut scene, local, place);
+    }
     let scene = exposure::expose(scene, plan.gain);
     let primaries = &plan.primaries;
     let shown = |scene, look: &Shown| {

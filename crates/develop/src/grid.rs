@@ -52,6 +52,18 @@ impl Grid {
         self.orientation.place(x, y, self.size)
     }
 
+    /// Where the middle of a pixel lies once the lens is corrected, as shares of the width and height of the active area.
+    pub(crate) fn share(&self, base: &Base, x: usize, y: usize) -> [f32; 2] {
+        let area = base.capture.active_area;
+        let middle = |origin: isize, at: usize| origin as f64 + (at as f64 + 0.5) * self.bin as f64;
+        let at = [middle(self.origin.0, x), middle(self.origin.1, y)];
+        let [x, y] = match &base.laid.warp {
+            None => [at[0] - area.x as f64, at[1] - area.y as f64],
+            Some(warp) => warp.corrected(at[0], at[1]),
+        };
+        [(x / area.width as f64) as f32, (y / area.height as f64) as f32]
+    }
+
     /// Column and row of the frame at which a rectangle begins.
     pub(crate) fn corner(&self, rect: Rect) -> (isize, isize) {
         (self.origin.0 + (rect.x * self.bin) as isize, self.origin.1 + (rect.y * self.bin) as isize)

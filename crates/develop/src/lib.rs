@@ -19,8 +19,8 @@
 pub mod recipe;
 pub use recipe::{
     Balance, Bits, Crop, Demosaic, Denoise, DenoiseBy, Exposure, Flip, Gamut, Geometry, Highlights, Lens,
-    Lines, Look, Marks, Mending, Output, OutputSpace, Overlay, Perspective, Points, PointsError, Recipe,
-    Resize, Tones, Turn,
+    Lines, LocalTone, Look, Marks, Mending, Output, OutputSpace, Overlay, Perspective, Points, PointsError,
+    Recipe, Resize, Tones, Turn,
 };
 
 pub mod error;
@@ -73,6 +73,7 @@ mod finish;
 mod grid;
 mod in_turn;
 pub mod lateral;
+mod local_tone;
 mod neighbourhood;
 mod neutral;
 mod render;

@@ -1,6 +1,5 @@
 //! What the loops use: everything computed once for one capture, one profile and one recipe.
 
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use darkroot_colour::temperature::Temperature;
@@ -12,23 +11,22 @@ use crate::analysis::Analysis;
 use crate::base::Base;
 use crate::corrections::is_supported;
 use crate::demosaic::Method;
-use crate::denoise::{Asked, Denoiser, Strength};
 use crate::error::Error;
 use crate::gamut::{Mapping, Primaries};
-use crate::geometry::{Geometry, Laid, Lens, lay};
-use crate::highlights::{CLIPPED, Rebuild, Treatment};
-use crate::lateral::Lateral;
+use crate::geometry::lay;
+use crate::highlights::{Rebuild, Treatment};
+use crate::local_tone::LocalGains;
 use crate::lut;
-use crate::mend::{Mends, Wanted};
-use crate::noise::Noise;
-use crate::recipe::{Bits, Crop, Denoise, Exposure, Highlights, Look, Mending, OutputSpace, Recipe};
-use crate::sharpen::Sharpener;
+use crate::recipe::{Bits, Crop, Exposure, Highlights, Look, OutputSpace, Recipe};
 use crate::shown::Shown;
 use crate::tally::{Clipped, Tally};
 use crate::transfer::Encoder;
 use crate::view::Scale;
 use crate::whites::Whites;
 use crate::{auto_exposure, neutral};
+
+mod before_exposure;
+use before_exposure::{denoiser, lateral, mends, noise_left, sharpener};
 
 /// What the colours of a picture were computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,6 +58,8 @@ pub struct Plan {
     pub(crate) base: Base,
     /// Balanced camera RGB to linear Rec. 2020; `None` for camera output.
     pub(crate) model: Option<PlaneModel>,
+    /// What the file does to each part of the picture; `None` for nothing.
+    pub(crate) local_tone: Option<LocalGains>,
     /// How light is shown; `None` where it is shown in proportion.
     pub(crate) shown: Option<Shown>,
     /// What is laid over the look.
@@ -167,6 +167,8 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         Highlights::Rebuild if linear => Treatment::Keep,
         wanted => treatment(analysis, wanted, multipliers, is_uneven),
     };
+    let for_people = shown.is_some() && !camera_output;
+    let local_tone = LocalGains::asked(capture, recipe.local_tone, for_people, &mut notes);
     Ok(Plan {
         colours,
         white: white.map(Temperature::of),
@@ -200,6 +202,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         colour_model: (recipe.output.space != OutputSpace::Camera).then_some(model),
         gamut: Mapping::of(recipe.gamut, linear, reproduced),
         tally: Arc::default(),
+        local_tone,
         lut: overlay.filter(|_| shown.is_some()).and_then(lut::Laid::of),
         shown,
         primaries: Primaries::new(&space),
@@ -207,80 +210,6 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
         space: recipe.output.space,
         bits: recipe.output.bits,
     })
-}
-
-/// Noise that is left when a mosaic is interpolated, where that method has a bias by it.
-fn noise_left(
-    analysis: &Analysis,
-    demosaic: Method,
-    denoiser: Option<&Denoiser>,
-    multipliers: [f32; 3],
-) -> Noise {
-    let left = denoiser.map_or(1.0, Denoiser::left);
-    if demosaic == Method::Lmmse && left > 0.0 {
-        Noise::of(analysis.noise(), multipliers).times(left)
-    } else {
-        Noise::NONE
-    }
-}
-
-/// What is put right in samples. A measurement gets them as they are.
-fn mends(analysis: &Analysis, recipe: &Recipe, measuring: bool) -> Arc<Mends> {
-    if measuring || analysis.capture().rendered {
-        return Arc::default();
-    }
-    let [hot_pixels, banding] = [recipe.hot_pixels, recipe.banding].map(|mending| mending == Mending::Auto);
-    Arc::clone(analysis.mends(Wanted { hot_pixels, banding }))
-}
-
-/// Lateral chromatic aberration that is to be corrected: where something certain is known, and no correction of the lens has its
-/// own. A measurement gets the samples where they are.
-fn lateral(analysis: &Analysis, asked: &Geometry, measuring: bool, laid: &Laid) -> Option<Lateral> {
-    let is_kept = measuring || asked.keep_fringes || asked.lens == Lens::Off || laid.splits_colours();
-    if is_kept { None } else { analysis.lateral() }
-}
-
-/// What takes away noise: as much as is asked for, or as suits the look.
-fn denoiser(
-    analysis: &Analysis,
-    asked: Denoise,
-    measuring: bool,
-    multipliers: [f32; 3],
-    mends: &Arc<Mends>,
-) -> Option<Arc<Denoiser>> {
-    let amount = asked.amount.unwrap_or(if measuring { 0.0 } else { 1.0 });
-    let strength = Strength { luma: amount * asked.luma, chroma: amount * asked.chroma };
-    if analysis.capture().rendered || strength.luma <= 0.0 && strength.chroma <= 0.0 {
-        return None;
-    }
-    let model = analysis.noise_model()?;
-    let limits = analysis.survey().saturation.map(|limit| CLIPPED * limit);
-    analysis.denoiser(Asked { by: asked.by, model, multipliers, strength, limits, mends: Arc::clone(mends) })
-}
-
-/// Blurs that are undone, pixels: below the first there is nothing to do; beyond the last a picture is not in focus.
-const BLURS: RangeInclusive<f32> = 0.3..=0.9;
-/// Blur of a picture that does not tell its own.
-const USUAL_BLUR: f32 = 0.4;
-
-/// What sharpens the picture.
-fn sharpener(
-    analysis: &Analysis,
-    amount: f32,
-    multipliers: [f32; 3],
-    highlights: &Treatment,
-) -> Option<Sharpener> {
-    if analysis.capture().rendered || amount <= 0.0 {
-        return None;
-    }
-    let blur = analysis.blur().unwrap_or(USUAL_BLUR).min(*BLURS.end());
-    let white = match highlights {
-        Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) => {
-            limits.iter().fold(f32::MAX, |a, &b| a.min(b))
-        }
-        _ => f32::MAX,
-    };
-    (blur >= *BLURS.start()).then(|| Sharpener::of(blur, amount, analysis.noise_model(), multipliers, white))
 }
 
 /// What tells whites from neutrals. Samples that the camera has balanced already have their white at (1,1,1), and another

@@ -26,6 +26,8 @@ pub struct Recipe {
     pub sharpen: Option<f32>,
     /// Brightness.
     pub exposure: Exposure,
+    /// What becomes of a local tone map in the file.
+    pub local_tone: LocalTone,
     /// Rendering from scene to display.
     pub look: Look,
     /// What is changed about it.
@@ -71,6 +73,16 @@ pub enum Balance {
     },
     /// Multipliers for red, green and blue; only their ratios count.
     Multipliers([f64; 3]),
+}
+
+/// What becomes of the local tone map that a file carries, as phones write it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum LocalTone {
+    /// It is applied in looks for people: not in the linear one, not in the reproduction.
+    #[default]
+    Auto,
+    /// It is left out.
+    Off,
 }
 
 /// What becomes of samples at the sensor's limit.

@@ -2,7 +2,7 @@
 
 use darkroot_colour::{Matrix3, Xy};
 
-use crate::{BlackLevel, Correction, Counts, Metadata, Orientation, Rect, WhiteLevel};
+use crate::{BlackLevel, Correction, Counts, LocalToneMap, Metadata, Orientation, Rect, WhiteLevel};
 
 /// Which camera took the picture.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -107,6 +107,8 @@ pub struct Capture {
     pub mosaic_corrections: Vec<Correction>,
     /// Corrections on demosaiced camera RGB (DNG OpcodeList3).
     pub picture_corrections: Vec<Correction>,
+    /// What the maker's rendering does to each part of the picture; `None` where the file does not say.
+    pub local_tone: Option<LocalToneMap>,
     /// What the camera wrote about the shot.
     pub metadata: Metadata,
     /// How the file was stored.
@@ -146,6 +148,7 @@ impl Capture {
             noise_profile: Vec::new(),
             mosaic_corrections: Vec::new(),
             picture_corrections: Vec::new(),
+            local_tone: None,
             metadata: Metadata::default(),
             source: Source { format: nothing(), compression: nothing(), bits, decoder: nothing() },
             notes: Vec::new(),

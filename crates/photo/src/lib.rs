@@ -33,6 +33,9 @@ pub use levels::{BlackLevel, WhiteLevel};
 pub mod correction;
 pub use correction::Correction;
 
+pub mod local_tone;
+pub use local_tone::LocalToneMap;
+
 pub mod planes;
 pub use planes::{Camera as CameraSpace, Display, Rgb, Scene, Toned};
 

@@ -14,11 +14,7 @@ const SEMANTIC_NAME: u16 = 0xcd2e;
 const MAX_NAME: usize = 64;
 
 /// Tags of a rendering that belongs to the maker's look, with what they are.
-const LOOK_TAGS: [(u16, &str); 3] = [
-    (0xcd2d, "local tone map (ProfileGainTableMap)"),
-    (0xcd40, "local tone map (ProfileGainTableMap2)"),
-    (0xcd3f, "colour tables (RGBTables)"),
-];
+const LOOK_TAGS: [(u16, &str); 1] = [(0xcd3f, "colour tables (RGBTables)")];
 
 /// Notes on all of them.
 pub(crate) fn notes(tiff: &Directories<'_>) -> Vec<String> {
@@ -28,7 +24,7 @@ pub(crate) fn notes(tiff: &Directories<'_>) -> Vec<String> {
     let mut notes: Vec<String> = LOOK_TAGS
         .iter()
         .filter(|(number, _)| tiff.has(*number))
-        .map(|(_, what)| format!("the file's {what} belongs to the maker's look and is not applied"))
+        .map(|(_, what)| format!("the file's {what} belong to the maker's look and are not applied"))
         .collect();
     let mut others: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for directory in &tiff.all {
@@ -89,7 +85,7 @@ mod tests {
         let directory = |entries: &[Vec<u8>], next: u32| {
             [&(entries.len() as u16).to_le_bytes()[..], &entries.concat(), &next.to_le_bytes()].concat()
         };
-        let first = [entry(DNG_VERSION, 1, 4, [1, 7, 1, 0]), entry(0xcd40, 7, 4, [0; 4])];
+        let first = [entry(DNG_VERSION, 1, 4, [1, 7, 1, 0]), entry(0xcd3f, 7, 4, [0; 4])];
         let second =
             [entry(tag::NEW_SUBFILE_TYPE, 4, 1, subfile.to_le_bytes()), entry(SEMANTIC_NAME, 2, 4, *name)];
         let first_length = 2 + 12 * first.len() as u32 + 4;
@@ -97,10 +93,9 @@ mod tests {
     }
 
     #[test]
-    fn masks_and_tone_maps_are_said() {
+    fn masks_and_colour_tables_are_said() {
         let said = |subfile, name| notes(&Directories::walk(&dng(subfile, name)).unwrap().unwrap());
-        let tone =
-            "the file's local tone map (ProfileGainTableMap2) belongs to the maker's look and is not applied";
+        let tone = "the file's colour tables (RGBTables) belong to the maker's look and are not applied";
         let mask = "the file also holds semantic masks (sky), which is not used";
         assert_eq!(said(0x1_0004, b"sky\0"), [tone, mask]);
         assert_eq!(said(8, b"\0\0\0\0"), [tone, "the file also holds a depth map, which is not used"]);

@@ -12,8 +12,8 @@ use crate::flash_facts::{
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
 use crate::{
-    Damage, Error, Limits, TooLarge, Unknown, dng_extras, dng_jxl, dng_mends, exif, maker_note, nef_packing,
-    opcode_work, opcodes,
+    Damage, Error, Limits, TooLarge, Unknown, dng_extras, dng_jxl, dng_mends, exif, local_tone, maker_note,
+    nef_packing, opcode_work, opcodes,
 };
 
 /// What [`Source::decoder`] says.
@@ -299,6 +299,7 @@ fn describe(
         mosaic_corrections = opcodes::parse(&opcodes.lists[1], "OpcodeList2", &mut notes);
         picture_corrections = opcodes::parse(&opcodes.lists[2], "OpcodeList3", &mut notes);
     }
+    let local_tone = tiff.filter(|_| is_dng).and_then(|tiff| local_tone::read(tiff, &mut notes));
     let mut metadata = exif::read(bytes, container, meta);
     exif::complete(&mut metadata, meta);
     Ok(Capture {
@@ -325,6 +326,7 @@ fn describe(
         noise_profile: noise_profile(meta),
         mosaic_corrections,
         picture_corrections,
+        local_tone,
         metadata,
         source: Source {
             format: meta.format.map_or("raw", |f| f.name()).to_owned(),

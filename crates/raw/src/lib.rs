@@ -38,6 +38,7 @@ mod loader;
 mod dng_extras;
 mod dng_jxl;
 mod dng_mends;
+mod local_tone;
 mod maker_note;
 mod nef_packing;
 mod nikon_note;

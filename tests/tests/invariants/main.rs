@@ -14,6 +14,7 @@ mod grey;
 mod highlights;
 mod hostile;
 mod lateral;
+mod local_tone;
 mod numbers;
 mod perspective;
 mod ramps;

@@ -70,6 +70,7 @@ pub(super) fn imagepipe(settings: &Settings, recipe: &Recipe) -> Result<(), Sett
         ("exposure", recipe.exposure == fixed.exposure),
         ("white-balance", recipe.balance == fixed.balance),
         ("highlights", recipe.highlights == fixed.highlights),
+        ("local-tone", recipe.local_tone == fixed.local_tone),
         ("hot-pixels", recipe.hot_pixels == fixed.hot_pixels),
         ("banding", recipe.banding == fixed.banding),
         ("denoise", recipe.denoise == fixed.denoise),

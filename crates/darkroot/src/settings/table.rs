@@ -13,8 +13,8 @@ use super::perspective::PERSPECTIVE;
 use super::setting::{Changes, Group, Kind, Setting};
 use super::text::{NotAValue, amount, light, number, one_of, profile, space};
 use super::tones::{
-    BLACK, CONTRAST, CURVE, HIGHLIGHTS as HIGHLIGHTS_TONE, LUT, LUT_SPACE, SATURATION, SHADOWS, VIBRANCE,
-    WHITE,
+    BLACK, CONTRAST, CURVE, HIGHLIGHTS as HIGHLIGHTS_TONE, LOCAL_TONE, LUT, LUT_SPACE, SATURATION, SHADOWS,
+    VIBRANCE, WHITE,
 };
 use super::words::{
     AUTO, BITS, DECODERS, DEMOSAIC, ENGINES, FORMATS, GAMUT, HIGHLIGHTS, LOOKS, SWITCH, plain,
@@ -27,7 +27,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 58] = [
+pub const SETTINGS: [Setting; 59] = [
     Setting {
         name: "format",
         alias: None,
@@ -175,6 +175,7 @@ pub const SETTINGS: [Setting; 58] = [
         changes: Changes::Picture,
         set: |to, text| put(&mut to.recipe.highlights, one_of(&HIGHLIGHTS, text)),
     },
+    LOCAL_TONE,
     HOT_PIXELS,
     BANDING,
     DENOISE,

@@ -6,8 +6,8 @@ use super::Settings;
 use super::setting::{Changes, Group, Kind, Setting};
 use super::spaces::space;
 use super::table::put;
-use super::text::{NotAValue, number, path};
-use super::words::OFF;
+use super::text::{NotAValue, number, one_of, path};
+use super::words::{self, AUTO, OFF, plain};
 
 const fn row(
     name: &'static str,
@@ -31,6 +31,18 @@ const fn row(
     }
 }
 
+pub(super) const LOCAL_TONE: Setting = Setting {
+    name: "local-tone",
+    alias: None,
+    noun: "way with local tone maps",
+    kind: Kind::Words(const { &plain(&words::LOCAL_TONE) }),
+    default: AUTO,
+    group: Group::Picture,
+    placeholder: "",
+    help: "What becomes of the local tone map that a DNG carries, as phones write it (linear and reproduction leave it out)",
+    changes: Changes::Picture,
+    set: |to, text| put(&mut to.recipe.local_tone, one_of(&words::LOCAL_TONE, text)),
+};
 pub(super) const CONTRAST: Setting = row(
     "contrast",
     "contrast",

@@ -1,6 +1,6 @@
 //! The words that settings of the table have for their values.
 
-use darkroot_develop::{Bits, Demosaic, Gamut, Highlights, Look, Mending};
+use darkroot_develop::{Bits, Demosaic, Gamut, Highlights, LocalTone, Look, Mending};
 use darkroot_encode::{ChromaSubsampling, Format, TiffCompression, WebpKind};
 use darkroot_raw::Decoder;
 
@@ -92,6 +92,8 @@ pub(super) const BANDING: [Word<Mending>; 2] = [
     word(AUTO, Mending::Auto, "It is taken away where it is certain"),
     word("off", Mending::Off, "It stays"),
 ];
+pub(super) const LOCAL_TONE: [Word<LocalTone>; 2] =
+    [word(AUTO, LocalTone::Auto, "It is applied"), word("off", LocalTone::Off, "It is left out")];
 pub(super) const HOT_PIXELS: [Word<Mending>; 2] = [
     word(AUTO, Mending::Auto, "They take the light of those around them; stars stay"),
     word("off", Mending::Off, "They stay"),

@@ -63,9 +63,13 @@ impl Warp {
 
     /// Where a colour of a place of the picture lies in the active area, in pixels from its corner.
     pub(crate) fn place(&self, channel: usize, x: f64, y: f64) -> [f64; 2] {
+        self.lens.iter().rev().fold(self.corrected(x, y), |at, lens| lens.place(channel, at))
+    }
+
+    /// Where a place of the picture lies in the active area once the lens is corrected, in pixels from its corner.
+    pub(crate) fn corrected(&self, x: f64, y: f64) -> [f64; 2] {
         let v = self.to_frame * Vector3::new(x, y, 1.0);
-        let corrected = [v.x / v.z, v.y / v.z];
-        self.lens.iter().rev().fold(corrected, |at, lens| lens.place(channel, at))
+        [v.x / v.z, v.y / v.z]
     }
 
     /// Where the pixels of a part of the picture come from, both at 1/`bin` of their size. Places that are none, as hostile
