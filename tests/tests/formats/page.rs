@@ -46,7 +46,7 @@ What Darkroot reads, maker by maker, and how that is known. Made from the tests 
 A real file says more than a synthetic one, and one file says nothing of the maker's other cameras. `fixtures` and `raw` in
 `DARKROOT_DATA` are not part of the repository.
 
-What is in a DNG and is not used is said in a note of the report: local tone maps (ProfileGainTableMap, 1 and 2), colour tables
+What is in a DNG and is not used is said in a note of the report: colour tables
 (RGBTables), semantic and transparency masks, depth maps, enhanced pictures; of opcodes TrimBounds,
 warps of the mosaic, and bad pixels outside of OpcodeList1. Refused in words: integers of 32 bits, separate
 planes, four-colour sensors.

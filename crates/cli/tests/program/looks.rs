@@ -99,3 +99,27 @@ fn one_look_is_made_of_the_previews_of_several_photographs() {
     let none = desk.run(&["recipe", "d.dng", "--camera-look"]);
     assert!(none.code != 0 && none.err.contains("no file has"), "{}", none.err);
 }
+
+#[test]
+#[cfg_attr(not(has_raw_files), ignore = "needs `raw` in DARKROOT_DATA")]
+fn the_local_tone_map_of_a_dng_is_applied_however_it_is_stored() {
+    let desk = Desk::new();
+    // The same grey and the same map, its gains as whole and as floating-point numbers: 4 in the middle, 1 at the edges.
+    let pixel = |kind: &str, place: (u32, u32), options: &[&str]| {
+        let raw = real_files("raw").join(format!("pgtm2_{kind}.dng"));
+        let name = format!("{kind}.png");
+        let run = desk.develop(&[&[raw.to_str().unwrap(), "-o", &name, "--overwrite"], options].concat());
+        (image::open(desk.path(&name)).unwrap().into_rgb8().get_pixel(place.0, place.1)[1], run.err)
+    };
+    let (off, said) = pixel("u8", (100, 100), &["--local-tone", "off"]);
+    assert!(said.contains("the file's local tone map is not applied"), "{said}");
+    let mut middles = Vec::new();
+    for kind in ["u8", "u16", "f16", "f32"] {
+        let (middle, said) = pixel(kind, (100, 100), &[]);
+        assert!(said.contains("the file's local tone map is applied"), "{said}");
+        let (corner, _) = pixel(kind, (0, 0), &[]);
+        assert!(middle > off + 60 && corner.abs_diff(off) <= 2, "{kind}: {middle} {corner} {off}");
+        middles.push(middle);
+    }
+    assert!(middles.iter().all(|m| m.abs_diff(middles[0]) <= 1), "{middles:?}");
+}
