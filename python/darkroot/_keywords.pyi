@@ -43,6 +43,7 @@ class Settings(TypedDict, total=False):
     dark: str | os.PathLike[str] | None
     flat: str | os.PathLike[str] | None
     highlights: Literal["rebuild", "clip", "keep"] | None
+    local_tone: Literal["auto", "off"] | None
     hot_pixels: Literal["auto", "off"] | None
     banding: Literal["auto", "off"] | None
     denoise: str | float | Sequence[float] | None
