@@ -18,4 +18,10 @@ cargo run --release -q -p darkroot-simulate --example make_raw -- --format dng -
     --out "$bright/bright.dng"
 develop "$bright/bright.dng" --exposure -2 --highlights keep -o docs/images/highlights-keep.jpg
 develop "$bright/bright.dng" --exposure -2 --highlights rebuild -o docs/images/highlights-rebuild.jpg
+# One that is five stops too dark.
+cargo run --release -q -p darkroot-simulate --example make_raw -- --format dng --width 1440 --height 960 --stops -5 \
+    --out "$bright/dark.dng"
+for denoise in off auto; do
+    develop "$bright/dark.dng" --exposure 5 --denoise $denoise --sharpen off --crop 620,600,360,240 -o docs/images/noise-$denoise.jpg
+done
 rm -r "$bright"
