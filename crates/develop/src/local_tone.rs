@@ -48,8 +48,7 @@ impl LocalGains {
         let [r, g, b] = times(self.from_scene, scene);
         let seen = [r, g, b, r.min(g).min(b), r.max(g).max(b)];
         let light: f32 = seen.iter().zip(map.weights).map(|(v, weight)| v * weight).sum();
-        // No number counts as none.
-        let light = light.max(0.0).min(1.0).powf(map.gamma) * map.entries as f32;
+        let light = light.clamp(0.0, 1.0).powf(map.gamma) * map.entries as f32;
         let (entry, next, above) = between(light, map.entries);
         let axis = |axis: usize, share: f32| {
             let at = (share - map.origin[axis] as f32) / map.spacing[axis].max(1e-6) as f32;
@@ -68,7 +67,7 @@ impl LocalGains {
 }
 
 /// The two of `count` points that a place lies between, and its share of the way; before the first and after the last one it is
-/// that point.
+/// that point. What is no number is before the first.
 fn between(at: f32, count: usize) -> (usize, usize, f32) {
     let at = at.max(0.0).min((count - 1) as f32);
     let first = at as usize;
