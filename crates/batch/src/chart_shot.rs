@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use darkroot::ChartRequest;
 use darkroot::fault::ChartError;
 use darkroot::files::{Output, Tree};
-use darkroot::make_profile::ChartRequest;
 use darkroot::shot::{Finding, Verdict};
 use darkroot::{
     Error, LightSource, MadeProfile, Settings, ShotOptions, charts, find_chart, light, make_profile, store,

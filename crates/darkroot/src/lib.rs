@@ -86,7 +86,7 @@ pub mod find_chart;
 pub use find_chart::{FoundCharts, find_charts, find_charts_in};
 
 pub mod shot;
-pub use shot::{Shot, ShotOptions};
+pub use shot::{ChartRequest, Shot, ShotOptions};
 
 pub mod verify;
 
@@ -100,7 +100,7 @@ pub mod chart_camera;
 pub use chart_camera::{chart_camera, table_camera};
 
 pub mod make_profile;
-pub use make_profile::{ChartRequest, MadeProfile, make_profile};
+pub use make_profile::{MadeProfile, make_profile};
 
 pub mod metadata;
 

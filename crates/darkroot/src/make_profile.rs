@@ -1,19 +1,15 @@
 //! Shots of a chart to a profile.
 
-use std::path::PathBuf;
-
 use darkroot_calibrate::calibrate;
 use darkroot_calibrate::fit::Choice;
 use darkroot_calibrate::gates::{self, Departure};
 use darkroot_calibrate::series::{self, Member};
-use darkroot_chart::{ChartLayout, Reference};
 use darkroot_photo::Camera;
-use darkroot_profile::{Kind, Origin, Profile, ProfileCamera};
+use darkroot_profile::{Origin, Profile, ProfileCamera};
 
-use crate::charts::NamedReference;
 use crate::fault::ChartError;
 use crate::light::LightSource;
-use crate::shot::{Found, Gate, Shot, ShotOptions, View, WhichReference, common_name, open_view, refuse};
+use crate::shot::{ChartRequest, Found, Gate, Shot, View, WhichReference, common_name, open_view, refuse};
 use crate::shown;
 use crate::{Error, Settings};
 
@@ -21,55 +17,6 @@ pub use darkroot_calibrate::{Calibrated, Compared, JudgedPatch};
 
 /// Red or blue against green, as a natural logarithm, from which the camera's white is another than the light's.
 const OTHER_WHITE: f64 = 0.15;
-
-/// What a profile is made from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ChartRequest {
-    /// Shots of the chart with the light of each. Those under one light are an exposure bracket, or `average` is set.
-    pub shots: Vec<(PathBuf, LightSource)>,
-    /// The chart.
-    pub layout: ChartLayout,
-    /// What its patches are.
-    pub reference: Reference,
-    /// Name of the reference, for the profile ("classic24-after-2014", "my-chart.cie").
-    pub reference_name: String,
-    /// SHA-256 of its file; empty for those built in.
-    pub reference_sha256: String,
-    /// What else the chart may be. The shot decides, by its patches left out of a fit.
-    pub other_references: Vec<NamedReference>,
-    /// How the shots are treated.
-    pub options: ShotOptions,
-    /// Take the mean of shots under one light at one exposure. Without it they are refused, because two lights may
-    /// have been meant.
-    pub average: bool,
-    /// The model; the best one if not given.
-    pub kind: Option<Kind>,
-    /// Day that the profile carries, YYYY-MM-DD; may be empty.
-    pub date: String,
-}
-
-impl ChartRequest {
-    /// For shots with the light of each: the best model, no day, and no mean of shots at one exposure.
-    pub fn of(
-        shots: Vec<(PathBuf, LightSource)>,
-        layout: ChartLayout,
-        reference: NamedReference,
-        options: ShotOptions,
-    ) -> Self {
-        Self {
-            shots,
-            layout,
-            reference: reference.colours,
-            reference_name: reference.name,
-            reference_sha256: reference.sha256,
-            other_references: reference.others,
-            options,
-            average: false,
-            kind: None,
-            date: String::new(),
-        }
-    }
-}
 
 /// One light of a made profile.
 #[derive(Debug, Clone, PartialEq)]

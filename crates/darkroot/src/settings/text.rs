@@ -276,7 +276,7 @@ mod tests {
                 assert_eq!(format!("{:?}", word.value).to_lowercase(), word.word);
             }
         }
-        same(&LOOKS);
+        named(&LOOKS, &["Neutral", "Vivid", "Flat", "Camera", "Profile", "Reproduction", "Linear"]);
         same(&HIGHLIGHTS);
         same(&GAMUT);
         same(&COMPRESSION);

@@ -4,6 +4,7 @@
 
 mod light;
 pub(crate) mod rendered;
+mod request;
 mod view;
 mod which;
 
@@ -17,6 +18,7 @@ use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, Slope};
 pub use darkroot_calibrate::gates::near;
 pub use darkroot_calibrate::{Correct, Finding, Gate, Verdict};
 pub(crate) use light::light_of;
+pub use request::ChartRequest;
 pub use view::View;
 pub(crate) use view::common_name;
 pub(crate) use which::WhichReference;

@@ -4,8 +4,7 @@ use darkroot_calibrate::LightSource;
 use darkroot_calibrate::reference::left_out;
 use darkroot_chart::Reference;
 
-use super::{Found, ShotOptions};
-use crate::make_profile::ChartRequest;
+use super::{ChartRequest, Found, ShotOptions};
 
 /// The reference that patches left out of a fit to the others bear out.
 pub(crate) struct WhichReference<'a> {

@@ -15,7 +15,7 @@ pub use darkroot_calibrate::judge::{Broken, Judgement, Limits, PRESETS};
 
 use crate::fault::ChartError;
 use crate::light::LightSource;
-use crate::make_profile::ChartRequest;
+use crate::shot::ChartRequest;
 use crate::shot::{Shot, common_name, light_of, open};
 use crate::{Error, Settings};
 
