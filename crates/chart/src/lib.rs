@@ -17,8 +17,11 @@ pub use slanted_edge::EdgeResponse;
 pub mod distortion;
 pub use distortion::Distortion;
 
-pub mod lightness_noise;
-pub use lightness_noise::lightness_noise;
+pub mod noise;
+pub use noise::{PatchNoise, VisualNoise, patch_noise};
+
+pub mod banding;
+pub use banding::{Banding, banding};
 
 pub mod unevenness;
 pub use unevenness::Slope;

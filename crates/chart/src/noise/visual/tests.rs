@@ -1,0 +1,102 @@
+use super::*;
+use darkroot_photo::Size;
+
+const SIDE: usize = 128;
+const WHOLE: Quad = [[0.0, 0.0], [127.0, 0.0], [127.0, 127.0], [0.0, 127.0]];
+/// Light that is XYZ itself.
+const PLAIN: Matrix3 = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+
+fn picture(pixel: impl Fn(usize, usize) -> [f64; 3]) -> Mosaic<f32> {
+    let size = Size { width: SIDE, height: SIDE };
+    let samples = (0..size.area()).flat_map(|i| pixel(i % SIDE, i / SIDE).map(|v| v as f32)).collect();
+    Mosaic { size, layout: Layout::Rgb, samples }
+}
+
+/// A grey of luminance `y` under D50 with `x` of luminance and `c` of red against green in waves across.
+fn waves(y: f64, luminance: f64, red: f64, count: usize) -> Mosaic<f32> {
+    let from_e = bradford(EQUAL_ENERGY, white::D50);
+    picture(|x, _| {
+        let wave = (std::f64::consts::TAU * (count * x) as f64 / SIDE as f64).cos();
+        let level = y + luminance * wave;
+        let d50: [f64; 3] = (from_e * Vector3::new(level + red * wave, level, level)).into();
+        d50
+    })
+}
+
+/// L* a unit of Y.
+fn lightness_slope(y: f64) -> f64 {
+    116.0 / 3.0 * y.powf(-2.0 / 3.0)
+}
+
+#[test]
+fn a_wave_of_light_is_seen_by_the_sensitivity_at_its_frequency() {
+    // 12 waves over 128 pixels are 0.09375 cycles a pixel, at 40 pixels a degree 3.75 cycles a degree.
+    let found = visual_noise(&waves(0.3, 0.004, 0.0, 12), &PLAIN, &WHOLE, 40.0).unwrap();
+    let truth = 0.004 / 2f64.sqrt() * lightness_slope(0.3) * achromatic(3.75);
+    assert!((found.l / truth - 1.0).abs() < 0.01, "{found:?} {truth}");
+    assert!((achromatic(4.0) - 3.0).abs() < 0.001);
+    // A grey that gets lighter keeps its chromaticity.
+    assert!(found.u < 0.01 && found.v < 0.01, "{found:?}");
+    // The same wave from four times as far is too fine to be seen.
+    let far = visual_noise(&waves(0.3, 0.004, 0.0, 12), &PLAIN, &WHOLE, 320.0).unwrap();
+    assert!(far.l < 0.2 * found.l, "{far:?}");
+}
+
+#[test]
+fn a_wave_of_colour_is_seen_by_the_sensitivity_to_colour() {
+    let found = visual_noise(&waves(0.3, 0.0, 0.004, 12), &PLAIN, &WHOLE, 40.0).unwrap();
+    // X of illuminant E to u* under D65, by differences.
+    let out = bradford(EQUAL_ENERGY, white::D65);
+    let u = |x: f64| Xyz::from(out * Vector3::new(0.3 + x, 0.3, 0.3)).luv(white::D65).u;
+    let truth = (u(0.001) - u(-0.001)) / 0.002 * 0.004 / 2f64.sqrt() * red_green(3.75);
+    assert!((found.u / truth - 1.0).abs() < 0.01, "{found:?} {truth}");
+    // Bradford's transform to D65 moves a little of X into Y.
+    assert!(found.l < 0.1 * found.u, "{found:?}");
+}
+
+#[test]
+fn white_noise_of_light_is_what_the_sensitivity_leaves_of_its_variance() {
+    let from_e = bradford(EQUAL_ENERGY, white::D50);
+    let noisy = picture(|x, y| {
+        let v = 0.3 + 0.006 * normal(x as u64 + 1000 * y as u64);
+        (from_e * Vector3::new(v, v, v)).into()
+    });
+    let found = visual_noise(&noisy, &PLAIN, &WHOLE, 41.0).unwrap();
+    // The mean of the squared sensitivity over all frequencies of the square.
+    let cycles = |i: usize| i.min(SIDE - i) as f64 / SIDE as f64 * 41.0;
+    let square = |i: usize| achromatic(cycles(i % SIDE).hypot(cycles(i / SIDE))).powi(2);
+    let mean = (0..SIDE * SIDE).map(square).sum::<f64>() / (SIDE * SIDE) as f64;
+    let truth = 0.006 * lightness_slope(0.3) * mean.sqrt();
+    assert!((found.l / truth - 1.0).abs() < 0.03, "{found:?} {truth}");
+}
+
+#[test]
+fn an_even_patch_and_a_slope_of_light_have_none() {
+    let slope = picture(|x, y| [0.3 + 0.0004 * x as f64 + 0.0002 * y as f64; 3]);
+    assert!(visual_noise(&slope, &PLAIN, &WHOLE, 41.0).unwrap().weighted() < 0.01);
+    let black = picture(|_, _| [0.0; 3]);
+    assert!(visual_noise(&black, &PLAIN, &WHOLE, 41.0).unwrap().weighted() < 1e-9);
+}
+
+#[test]
+fn a_window_that_is_small_or_lies_outside_tells_nothing() {
+    let grey = picture(|_, _| [0.3; 3]);
+    let small = [[10.0, 10.0], [30.0, 10.0], [30.0, 30.0], [10.0, 30.0]];
+    let outside = [[200.0, 10.0], [300.0, 10.0], [300.0, 90.0], [200.0, 90.0]];
+    let nowhere = [[f64::NAN, 10.0], [300.0, 10.0], [300.0, 90.0], [200.0, 90.0]];
+    for window in [small, outside, nowhere] {
+        assert_eq!(visual_noise(&grey, &PLAIN, &window, 41.0), None);
+    }
+}
+
+/// Nearly normal noise of a place: the sum of twelve numbers from 0 to 1, less 6.
+fn normal(place: u64) -> f64 {
+    let mut z = place.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut sum = 0.0;
+    for _ in 0..12 {
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9).wrapping_add(0x94d0_49bb_1331_11eb);
+        z ^= z >> 27;
+        sum += (z >> 11) as f64 / (1u64 << 53) as f64;
+    }
+    sum - 6.0
+}
