@@ -21,6 +21,8 @@ pub struct PatchNoise {
     pub lightness: f64,
     /// Standard deviation of luminance, 1 for a perfect white.
     pub luminance: f64,
+    /// Pixels that these were measured by.
+    pub pixels: usize,
     /// What an eye sees of it; `None` where the patch is too small.
     pub visual: Option<VisualNoise>,
 }
@@ -39,6 +41,7 @@ pub fn patch_noise(
         PatchNoise {
             lightness: deviation(&lightness),
             luminance: deviation(&luminances),
+            pixels: luminances.len(),
             visual: visual_noise(light, to_xyz, window, pixels_per_degree),
         }
     };
