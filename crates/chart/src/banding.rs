@@ -25,7 +25,7 @@ pub struct Bands {
     pub deviation: f64,
     /// The line that is most off, in L\*, and which it is; `None` where bands are not certain.
     pub worst: Option<(f64, usize)>,
-    /// Standard error of the deviation where there are no bands: what could not be told from noise, L\*.
+    /// What could not have been told from noise, L\*: a deviation of three standard errors.
     pub noise: f64,
 }
 
@@ -79,7 +79,9 @@ pub fn banding(light: &Mosaic<f32>, luminance: [f64; 3]) -> Option<Banding> {
     let by_columns: Vec<[f64; 2]> = columns
         .clone()
         .into_par_iter()
-        .map(|column| halves(&rows).map(|half| lightness(half.clone().map(|r| y(column, r)).sum(), half.len())))
+        .map(|column| {
+            halves(&rows).map(|half| lightness(half.clone().map(|r| y(column, r)).sum(), half.len()))
+        })
         .collect();
     Some(Banding { rows: bands(&by_rows, rows.start), columns: bands(&by_columns, columns.start) })
 }
@@ -99,7 +101,7 @@ fn bands(lines: &[[f64; 2]], first: usize) -> Bands {
     Bands {
         deviation: if certain { shared.sqrt() } else { 0.0 },
         worst: worst.filter(|_| certain).map(|i| (off(i), first + i)),
-        noise: error.sqrt(),
+        noise: (CERTAIN * error).sqrt(),
     }
 }
 
@@ -157,7 +159,7 @@ mod tests {
     fn an_even_shot_has_no_bands_whatever_its_noise_and_its_falloff() {
         let found = banding(&shot(|_, _| 1.0), [0.2, 0.7, 0.1]).unwrap();
         assert!(found.deviation() < 1e-9 && found.rows.worst.is_none(), "{found:?}");
-        assert!(found.rows.noise < 0.03 && found.columns.noise < 0.03, "{found:?}");
+        assert!(found.rows.noise < 0.01 && found.columns.noise < 0.01, "{found:?}");
     }
 
     #[test]

@@ -207,7 +207,10 @@ pub const UNLIMITED: [(Metric, &str); 3] = [
         "ISO 15739:2013, 6.4, by secondary sources (Kerr 2008), extrapolated by the noise of the greys: an estimate; the lower \
          number can be relied on",
     ),
-    (Metric::Banding, "Darkroot's own; FADGI 2016 names field artifacts and leaves their measure to the future"),
+    (
+        Metric::Banding,
+        "Darkroot's own; FADGI 2016 names field artifacts and leaves their measure to the future",
+    ),
 ];
 
 #[cfg(test)]

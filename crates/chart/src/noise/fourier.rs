@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 pub(super) fn filtered(square: &[f64], side: usize, response: impl Fn(f64) -> f64) -> Vec<f64> {
     let turns: Vec<(f64, f64)> = (0..side).map(|i| (TAU * i as f64 / side as f64).sin_cos()).collect();
     let plain: Vec<Complex> = square.iter().map(|v| (*v, 0.0)).collect();
-    let mut spectrum = transposed_transform(&transposed_transform(&plain, side, &turns, -1.0), side, &turns, -1.0);
+    let mut spectrum =
+        transposed_transform(&transposed_transform(&plain, side, &turns, -1.0), side, &turns, -1.0);
     let cycles = |i: usize| i.min(side - i) as f64 / side as f64;
     for (i, value) in spectrum.iter_mut().enumerate() {
         let gain = response(cycles(i % side).hypot(cycles(i / side)));

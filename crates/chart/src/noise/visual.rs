@@ -72,7 +72,8 @@ pub fn visual_noise(
         Xyz::new(x.max(0.0), y.max(0.0), z.max(0.0)).luv(white::D65)
     };
     let luvs: Vec<_> = (0..a.len()).map(luv).collect();
-    let of = |part: fn(&darkroot_colour::luv::Luv) -> f64| deviation(&luvs.iter().map(part).collect::<Vec<_>>());
+    let of =
+        |part: fn(&darkroot_colour::luv::Luv) -> f64| deviation(&luvs.iter().map(part).collect::<Vec<_>>());
     Some(VisualNoise { l: of(|c| c.l), u: of(|c| c.u), v: of(|c| c.v) })
 }
 
@@ -100,9 +101,8 @@ fn two_exponentials(f: f64, one: [f64; 3], other: [f64; 3]) -> f64 {
 fn levelled(values: &[f64], side: usize) -> (f64, Vec<f64>) {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let middle = (side as f64 - 1.0) / 2.0;
-    let [across, down] = [0, 1].map(|axis| {
-        move |i: usize| (if axis == 0 { i % side } else { i / side }) as f64 - middle
-    });
+    let [across, down] =
+        [0, 1].map(|axis| move |i: usize| (if axis == 0 { i % side } else { i / side }) as f64 - middle);
     let slope = |place: &dyn Fn(usize) -> f64| {
         let product: f64 = values.iter().enumerate().map(|(i, v)| place(i) * v).sum();
         product / (0..values.len()).map(|i| place(i).powi(2)).sum::<f64>()
@@ -125,7 +125,8 @@ impl Square {
         let fits = |side: usize| {
             let [left, top] = middle.map(|m| (m - (side as f64 - 1.0) / 2.0).round());
             let reach = side as f64 - 1.0;
-            let corners = [[left, top], [left + reach, top], [left + reach, top + reach], [left, top + reach]];
+            let corners =
+                [[left, top], [left + reach, top], [left + reach, top + reach], [left, top + reach]];
             let within = left >= 0.0
                 && top >= 0.0
                 && left + reach < light.size.width as f64

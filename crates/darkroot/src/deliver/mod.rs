@@ -3,12 +3,13 @@
 
 mod edges;
 mod even;
+mod figures;
 
 use std::path::{Path, PathBuf};
 
 use darkroot_calibrate::shot::Chart;
 use darkroot_calibrate::{MeasuredPatch, ShotError};
-use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, distortion, lightness_noise};
+use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, distortion, patch_noise};
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use darkroot_encode::SourceProfile;
@@ -16,10 +17,12 @@ use darkroot_encode::source_profile::LINEAR;
 use darkroot_photo::{Layout, Mosaic, Size};
 
 pub use darkroot_calibrate::delivery::{
-    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Scale, Step,
-    Uniformity, Verdict, preset,
+    Bound, Delivery, Details, DynamicRange, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row,
+    Scale, Step, UNLIMITED, Uniformity, Verdict, preset,
 };
-pub use even::uniformity;
+pub use darkroot_chart::banding::{Banding, Bands};
+pub use darkroot_chart::noise::visual::PIXELS_PER_DEGREE;
+pub use figures::figures;
 
 use crate::fault::ChartError;
 use crate::light::LightSource;
@@ -45,6 +48,8 @@ pub struct DeliveryRequest {
     pub flat: Option<PathBuf>,
     /// Millimetres between the middles of two patches side by side, where they are known.
     pub pitch: Option<f64>,
+    /// Pixels of the picture in a degree of sight, for visual noise; [`PIXELS_PER_DEGREE`] is usual.
+    pub pixels_per_degree: f64,
     /// The light that the chart was taken in, where it is named.
     pub light: Option<LightSource>,
     /// Judge a picture whose light or balance is another all the same.
@@ -87,6 +92,8 @@ pub struct JudgedPicture {
     pub windows: Vec<Quad>,
     /// How sure that is, 0..=1.
     pub confidence: f64,
+    /// Pixels in a degree of sight, by which visual noise is told.
+    pub pixels_per_degree: f64,
     /// The figures.
     pub delivery: Delivery,
     /// Linear light of the brightest grey ([`LINEAR`]), which drift is told by.
@@ -116,7 +123,8 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         .map_err(|e| Error::chart(path, e))?;
     let to_xyz = LINEAR.to_xyz_under(white::D50);
     let luminance = [0, 1, 2].map(|c| to_xyz[(1, c)]);
-    let noise = lightness_noise(&view.frame.light, luminance, &place.windows);
+    let noise = patch_noise(&view.frame.light, &to_xyz, &place.windows, request.pixels_per_degree);
+    let even = request.flat.as_deref().map(even::evenness).transpose()?;
     let details = Details {
         edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout),
         scale: request.pitch.map(|pitch| Scale {
@@ -124,7 +132,8 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
             stated: opened.resolution,
         }),
         distortion: distortion::distortion(&view.frame.light, luminance, &place.patches, &request.layout),
-        uniformity: request.flat.as_deref().map(uniformity).transpose()?,
+        uniformity: even.map(|(uniformity, _)| uniformity),
+        banding: even.and_then(|(_, banding)| banding),
     };
     let colour = |rgb: [f64; 3]| xyz(&to_xyz, rgb);
     let mut delivery = darkroot_calibrate::delivery::judge(&patches, &noise, colour, &light, details);
@@ -145,6 +154,7 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         corners: place.corners,
         windows: place.windows,
         confidence: place.confidence,
+        pixels_per_degree: request.pixels_per_degree,
         delivery,
         white,
         view,

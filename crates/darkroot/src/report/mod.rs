@@ -1,6 +1,7 @@
 //! The report on a profile: one HTML page with everything in it, nothing from the network.
 
 pub mod delivered;
+mod measured;
 mod plots;
 mod shown;
 mod tables;
