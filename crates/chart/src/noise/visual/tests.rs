@@ -1,5 +1,7 @@
 use super::*;
-use darkroot_photo::Size;
+use darkroot_colour::Spectrum;
+use darkroot_photo::{Counts, Size};
+use darkroot_simulate::{Camera, Exposure, Scene, expose::expose};
 
 const SIDE: usize = 128;
 const WHOLE: Quad = [[0.0, 0.0], [127.0, 0.0], [127.0, 127.0], [0.0, 127.0]];
@@ -55,19 +57,32 @@ fn a_wave_of_colour_is_seen_by_the_sensitivity_to_colour() {
 }
 
 #[test]
-fn white_noise_of_light_is_what_the_sensitivity_leaves_of_its_variance() {
+fn a_simulated_shot_has_the_visual_noise_of_its_electrons() {
+    let camera = Camera { layout: Layout::Monochrome, crop: 0, full_well: 8000.0, ..Camera::simulated_one() };
+    let exposure = Exposure { noise: Some(11), ..Exposure::default() };
+    let size = Size { width: SIDE, height: SIDE };
+    let Counts::U16(counts) = expose(&Scene::flat(size, Spectrum::constant(0.4)), &camera, &exposure).counts
+    else {
+        panic!("whole numbers")
+    };
+    let level = |count: u16| (f64::from(count) - 512.0) / (15_892.0 - 512.0);
     let from_e = bradford(EQUAL_ENERGY, white::D50);
-    let noisy = picture(|x, y| {
-        let v = 0.3 + 0.006 * normal(x as u64 + 1000 * y as u64);
+    let shot = picture(|x, y| {
+        let v = level(counts.samples[y * SIDE + x]);
         (from_e * Vector3::new(v, v, v)).into()
     });
-    let found = visual_noise(&noisy, &PLAIN, &WHOLE, 41.0).unwrap();
+    let found = visual_noise(&shot, &PLAIN, &WHOLE, 41.0).unwrap();
+    let mean = counts.samples.iter().map(|count| level(*count)).sum::<f64>() / size.area() as f64;
+    let electrons = mean * 8000.0;
+    let deviation = (electrons + camera.read_noise.powi(2)).sqrt() / 8000.0;
     // The mean of the squared sensitivity over all frequencies of the square.
     let cycles = |i: usize| i.min(SIDE - i) as f64 / SIDE as f64 * 41.0;
     let square = |i: usize| achromatic(cycles(i % SIDE).hypot(cycles(i / SIDE))).powi(2);
-    let mean = (0..SIDE * SIDE).map(square).sum::<f64>() / (SIDE * SIDE) as f64;
-    let truth = 0.006 * lightness_slope(0.3) * mean.sqrt();
+    let seen = (0..size.area()).map(square).sum::<f64>() / size.area() as f64;
+    let truth = deviation * lightness_slope(mean) * seen.sqrt();
     assert!((found.l / truth - 1.0).abs() < 0.03, "{found:?} {truth}");
+    // Grey noise has the chromaticity of the grey, and so no colour.
+    assert!((found.weighted() / found.l - 1.0).abs() < 0.02, "{found:?}");
 }
 
 #[test]
@@ -87,16 +102,4 @@ fn a_window_that_is_small_or_lies_outside_tells_nothing() {
     for window in [small, outside, nowhere] {
         assert_eq!(visual_noise(&grey, &PLAIN, &window, 41.0), None);
     }
-}
-
-/// Nearly normal noise of a place: the sum of twelve numbers from 0 to 1, less 6.
-fn normal(place: u64) -> f64 {
-    let mut z = place.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let mut sum = 0.0;
-    for _ in 0..12 {
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9).wrapping_add(0x94d0_49bb_1331_11eb);
-        z ^= z >> 27;
-        sum += (z >> 11) as f64 / (1u64 << 53) as f64;
-    }
-    sum - 6.0
 }
