@@ -116,8 +116,8 @@ const fn level(name: &'static str, preset: &'static str) -> Level {
 const COMPARED: &str =
     "secondary: comparison of FADGI 2023, ISO 19264-1:2021 and Metamorfoze 2.0 (draft) at skandalski.pl";
 const VERSION_2: &str = "secondary: draft of June 2023 at preservationimaging.com";
-const REVERSED: &str = "secondary: comparison of FADGI 2023, ISO 19264-1:2021 and Metamorfoze 2.0 (draft) at skandalski.pl, whose \
-     four numbers of FADGI stand from 1 star to 4 and are read so: 4, 3 and 2 stars are then A, B and C of ISO, as in the highlights";
+const REVERSED: &str =
+    "secondary: the comparison at skandalski.pl, whose row of FADGI 2023 is read backwards (4, 3, 2 stars as ISO A, B, C)";
 const FADGI_2010: &str =
     "secondary: FADGI 2010 in translation at gxnsmy.com; the numbers of 2023 were not at hand";
 

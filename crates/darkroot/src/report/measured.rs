@@ -83,8 +83,8 @@ fn banded(bands: &Bands) -> String {
 /// What is measured without a limit, each with its source.
 pub(super) fn unlimited(judged: &JudgedPicture) -> Markup {
     html! {
+        h3 { "Measured without a limit" }
         table.gates {
-            caption { "Measured without a limit" }
             tr { th { "what" } th { "found" } th { "after" } }
             @for (metric, source) in &UNLIMITED {
                 tr {
