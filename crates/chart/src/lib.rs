@@ -12,7 +12,7 @@ pub mod sharpness;
 pub use sharpness::{EdgeWidth, edge_width};
 
 pub mod slanted_edge;
-pub use slanted_edge::EdgeResponse;
+pub use slanted_edge::{EdgeLine, EdgeResponse};
 
 pub mod distortion;
 pub use distortion::Distortion;

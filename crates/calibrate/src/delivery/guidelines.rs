@@ -116,8 +116,7 @@ const fn level(name: &'static str, preset: &'static str) -> Level {
 const COMPARED: &str =
     "secondary: comparison of FADGI 2023, ISO 19264-1:2021 and Metamorfoze 2.0 (draft) at skandalski.pl";
 const VERSION_2: &str = "secondary: draft of June 2023 at preservationimaging.com";
-const REVERSED: &str =
-    "secondary: the comparison at skandalski.pl, whose row of FADGI 2023 is read backwards (4, 3, 2 stars as ISO A, B, C)";
+const REVERSED: &str = "secondary: the comparison at skandalski.pl, whose row of FADGI 2023 is read backwards (4, 3, 2 stars as ISO A, B, C)";
 const FADGI_2010: &str =
     "secondary: FADGI 2010 in translation at gxnsmy.com; the numbers of 2023 were not at hand";
 

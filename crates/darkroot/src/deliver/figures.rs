@@ -9,6 +9,7 @@ use crate::path_text;
 /// Everything that was found in a picture, and the limits that were asked for.
 pub fn figures(judged: &JudgedPicture, verdicts: &[Verdict]) -> Value {
     let delivery = &judged.delivery;
+    let details = &delivery.details;
     let colour = |s: darkroot_profile::Summary| json!({"mean": s.mean, "median": s.median, "p95": s.p95, "max": s.max});
     json!({
         "file": path_text::text(&judged.path),
@@ -24,7 +25,15 @@ pub fn figures(judged: &JudgedPicture, verdicts: &[Verdict]) -> Value {
         "dynamic_range": delivery.dynamic_range.map(|range| json!({
             "stops": range.stops, "least": range.least, "shown": range.shown,
         })),
-        "banding": delivery.details.banding.map(|banding| {
+        "edges": details.edges.map(|e| json!({
+            "count": e.count, "sfr50": e.sfr50, "sfr10": e.sfr10, "peak": e.peak, "misregistration": e.misregistration,
+        })),
+        "scale": details.scale.map(|scale| json!({"pixels_an_inch": scale.found, "stated": scale.stated})),
+        "distortion": details.distortion.map(|grid| json!({"percent": grid.percent, "pixels": grid.pixels})),
+        "even_surface": details.uniformity.map(|even| json!({
+            "luminance_percent": even.luminance, "lightness": even.lightness, "colour": even.colour,
+        })),
+        "banding": details.banding.map(|banding| {
             let bands = |b: super::Bands| json!({"deviation": b.deviation, "worst": b.worst, "noise": b.noise});
             json!({"rows": bands(banding.rows), "columns": bands(banding.columns)})
         }),
