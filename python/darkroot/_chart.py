@@ -222,7 +222,7 @@ def verify(path, *, profile=None, light=None, preset=None, chart="classic24", re
     one ("fadgi-4star", "iso19264-a", "metamorfoze-full" ...).
 
     Returns a dictionary: ``light``, ``de2000`` and ``sl1`` (mean, median, p95, max), ``patches``; for finished pictures also ``space``,
-    ``verdicts`` and whether all were ``kept``.
+    ``verdicts``, whether all were ``kept``, and ``figures``: everything that was measured, as ``darkroot verify --json`` prints it.
 
     Raises :class:`ChartError` where no chart is found, or the picture is of another light than the one named.
     """

@@ -8,6 +8,9 @@ use thiserror::Error;
 
 mod argyll;
 
+mod beside;
+pub use beside::{Beside, EdgePlace};
+
 /// A chart of patches in a regular grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChartLayout {
@@ -25,6 +28,8 @@ pub struct ChartLayout {
     pub hinge: Option<Hinge>,
     /// The patches row by row from the top left one on: columns times rows of them.
     pub patches: Vec<PatchPlace>,
+    /// What stands beside the grid, which pictures are judged by, too.
+    pub beside: Option<Beside>,
 }
 
 /// Where a chart folds.
@@ -79,6 +84,9 @@ pub enum LayoutError {
         /// Rows stated.
         rows: usize,
     },
+    /// What stands beside the grid makes no sense.
+    #[error("what stands beside the grid cannot be used: {0}")]
+    Beside(&'static str),
     /// A number is out of its range.
     #[error("{0} is out of range: columns and rows 2 to 60, gap 0 to 1, hinge inside the chart, L 0 to 110")]
     Range(&'static str),
@@ -114,15 +122,26 @@ impl ChartLayout {
     }
 
     /// A user's chart from TOML: `name`, `columns`, `rows`, `gap`, and per patch `[[patch]]` a `name` and about its
-    /// `lab` under D50. `title` and `hinge = { after, width }` may follow.
+    /// `lab` under D50. `title` and `hinge = { after, width }` may follow, and what stands beside the grid in millimetres
+    /// ([`Beside`]): `size` of the grid, `[[beside]]` with `name`, `lab` and `at`, `[[edge]]` with `from`, `to` and `clear`.
     pub fn from_toml(text: &str) -> Result<Self, LayoutError> {
         let own: Own = toml::from_str(text)?;
         let title = own.title.unwrap_or_else(|| own.name.clone());
         let place =
             |p: OwnPatch| PatchPlace { name: p.name, lab: Lab { l: p.lab[0], a: p.lab[1], b: p.lab[2] } };
-        let patches = own.patch.into_iter().map(place).collect();
+        let patches: Vec<PatchPlace> = own.patch.into_iter().map(place).collect();
         let (columns, rows, gap, hinge) = (own.columns, own.rows, own.gap, own.hinge);
-        Self { name: own.name, title, columns, rows, gap, hinge, patches }.checked()
+        let at = |p: OwnBeside| (place(OwnPatch { name: p.name, lab: p.lab }), p.at);
+        let beside = match own.size {
+            Some(size) => {
+                let patches = own.beside.into_iter().map(at).collect();
+                Some(Beside { size, patches, edges: own.edge })
+            }
+            None if own.beside.is_empty() && own.edge.is_empty() => None,
+            None => return Err(LayoutError::Beside("`size`, the grid's width and height in mm, is missing")),
+        };
+        let beside = beside.map(|beside| beside.checked(&patches)).transpose()?;
+        Self { name: own.name, title, columns, rows, gap, hinge, patches, beside }.checked()
     }
 
     /// A user's chart from the text of an Argyll chart recognition file (.cht) with its table of expected colours.
@@ -160,7 +179,8 @@ impl ChartLayout {
             return Err(LayoutError::Count { patches, columns, rows });
         }
         let sane = |lab: Lab| (0.0..=110.0).contains(&lab.l) && lab.a.abs() < 200.0 && lab.b.abs() < 200.0;
-        if !self.patches.iter().all(|p| sane(p.lab)) {
+        let beside = self.beside.iter().flat_map(|beside| beside.patches.iter().map(|(place, _)| place));
+        if !self.patches.iter().chain(beside).all(|p| sane(p.lab)) {
             return Err(LayoutError::Range("a colour"));
         }
         Ok(self)
@@ -201,7 +221,7 @@ impl Stored {
         let rows = text.and_then(table).ok_or(LayoutError::NoColour(self.patches))?;
         let patches = rows.into_iter().map(|(name, lab)| PatchPlace { name, lab }).collect();
         let Self { name, title, columns, rows, gap, hinge, .. } = Self { patches: String::new(), ..self };
-        ChartLayout { name, title, columns, rows, gap, hinge, patches }.checked()
+        ChartLayout { name, title, columns, rows, gap, hinge, patches, beside: None }.checked()
     }
 }
 
@@ -215,6 +235,11 @@ struct Own {
     gap: f64,
     hinge: Option<Hinge>,
     patch: Vec<OwnPatch>,
+    size: Option<[f64; 2]>,
+    #[serde(default)]
+    beside: Vec<OwnBeside>,
+    #[serde(default)]
+    edge: Vec<EdgePlace>,
 }
 
 #[derive(Deserialize)]
@@ -222,6 +247,14 @@ struct Own {
 struct OwnPatch {
     name: String,
     lab: [f64; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OwnBeside {
+    name: String,
+    lab: [f64; 3],
+    at: [f64; 4],
 }
 
 #[cfg(test)]

@@ -12,13 +12,16 @@ pub mod sharpness;
 pub use sharpness::{EdgeWidth, edge_width};
 
 pub mod slanted_edge;
-pub use slanted_edge::EdgeResponse;
+pub use slanted_edge::{EdgeLine, EdgeResponse};
 
 pub mod distortion;
 pub use distortion::Distortion;
 
-pub mod lightness_noise;
-pub use lightness_noise::lightness_noise;
+pub mod noise;
+pub use noise::{PatchNoise, VisualNoise, patch_noise};
+
+pub mod banding;
+pub use banding::{Banding, banding};
 
 pub mod unevenness;
 pub use unevenness::Slope;

@@ -162,7 +162,7 @@ pub(crate) fn for_each_inside(
 }
 
 /// Whether a point lies inside of a convex quadrilateral, whichever way round its corners go.
-fn inside(quad: &Quad, x: f64, y: f64) -> bool {
+pub(crate) fn inside(quad: &Quad, x: f64, y: f64) -> bool {
     let side = |i: usize| {
         let ([ax, ay], [bx, by]) = (quad[i], quad[(i + 1) % 4]);
         (bx - ax) * (y - ay) - (by - ay) * (x - ax)

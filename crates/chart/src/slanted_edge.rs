@@ -56,11 +56,29 @@ impl EdgeResponse {
     }
 }
 
+/// A straight edge in a picture, between two even surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeLine {
+    /// One end, in pixels.
+    pub from: [f64; 2],
+    /// The other.
+    pub to: [f64; 2],
+    /// How far both sides are even, in pixels.
+    pub clear: f64,
+}
+
+/// Edges of any place, as targets have them for this purpose.
+pub fn responses_of(light: &Mosaic<f32>, luminance: [f64; 3], edges: &[EdgeLine]) -> Vec<EdgeResponse> {
+    let strip = |edge: &EdgeLine| Strip::along(light, edge.from, edge.to, INTO_GAP * edge.clear);
+    edges.iter().filter_map(strip).filter_map(|strip| response(&strip, luminance)).collect()
+}
+
 /// The edges of patches towards what lies around them. `patches` are whole patches in pixels of the picture, `gap` is the
 /// width of what lies between them as a share of a patch, `luminance` how much red, green and blue count.
 pub fn responses(light: &Mosaic<f32>, luminance: [f64; 3], patches: &[Quad], gap: f64) -> Vec<EdgeResponse> {
     let edges = patches.iter().flat_map(|quad| (0..4).map(move |side| (quad, side)));
-    edges.filter_map(|(quad, side)| response(light, luminance, quad, side, gap)).collect()
+    let strips = edges.filter_map(|(quad, side)| Strip::of(light, quad, side, gap));
+    strips.filter_map(|strip| response(&strip, luminance)).collect()
 }
 
 /// Where a patch really is, by its four edges: how far its centre lies from that of the quadrilateral, pixels. `None` where an
@@ -96,14 +114,7 @@ struct Strip<'a> {
     beside: f64,
 }
 
-fn response(
-    light: &Mosaic<f32>,
-    luminance: [f64; 3],
-    quad: &Quad,
-    side: usize,
-    gap: f64,
-) -> Option<EdgeResponse> {
-    let strip = Strip::of(light, quad, side, gap)?;
+fn response(strip: &Strip<'_>, luminance: [f64; 3]) -> Option<EdgeResponse> {
     let seen = |rgb: [f64; 3]| (0..3).map(|c| luminance[c] * rgb[c]).sum::<f64>();
     let line = strip.line(&seen)?;
     if !SLANT.contains(&line[1].atan().to_degrees().abs()) {
@@ -118,16 +129,22 @@ fn response(
 }
 
 impl<'a> Strip<'a> {
+    /// The strip along a side of a patch.
     fn of(light: &'a Mosaic<f32>, quad: &Quad, side: usize, gap: f64) -> Option<Self> {
-        let (from, to) = (quad[side], quad[(side + 1) % 4]);
-        let behind = quad[(side + 3) % 4];
+        let (from, to, behind) = (quad[side], quad[(side + 1) % 4], quad[(side + 3) % 4]);
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let depth = (behind[0] - from[0]).hypot(behind[1] - from[1]);
+        Self::along(light, from, to, (INTO_GAP * gap * length.min(depth)).min(depth / 3.0))
+    }
+
+    /// The strip along an edge, so many pixels on each side.
+    fn along(light: &'a Mosaic<f32>, from: [f64; 2], to: [f64; 2], beside: f64) -> Option<Self> {
         let exchanged = (to[0] - from[0]).abs() > (to[1] - from[1]).abs();
         let turned = |p: [f64; 2]| if exchanged { [p[1], p[0]] } else { p };
-        let ([x0, y0], [x1, y1], back) = (turned(from), turned(to), turned(behind));
-        let length = (x1 - x0).hypot(y1 - y0);
-        let depth = (back[0] - x0).hypot(back[1] - y0);
-        let beside = (INTO_GAP * gap * length.min(depth)).min(depth / 3.0).min(MOST_BESIDE);
-        if beside < FEWEST_BESIDE || !length.is_finite() {
+        let ([x0, y0], [x1, y1]) = (turned(from), turned(to));
+        let beside = beside.min(MOST_BESIDE);
+        // Also where a place is none.
+        if !(beside >= FEWEST_BESIDE && (x1 - x0).hypot(y1 - y0).is_finite()) {
             return None;
         }
         let slope = (x1 - x0) / (y1 - y0);

@@ -33,6 +33,13 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 2]; 4], String> {
     }
 }
 
+/// `--pixels-per-degree`.
+pub(crate) fn pixels_per_degree(text: &str) -> Result<f64, String> {
+    let pixels = text.trim().parse::<f64>().ok();
+    let sound = pixels.filter(|pixels| (5.0..=1000.0).contains(pixels));
+    sound.ok_or_else(|| format!("`{text}` is no number of pixels: write 5 to 1000"))
+}
+
 /// `--chart-pitch`.
 pub(crate) fn millimetres(text: &str) -> Result<f64, String> {
     let length = text.trim().trim_end_matches("mm").trim_end().parse::<f64>().ok();

@@ -244,6 +244,7 @@ pub(crate) fn verify_picture<'py>(
         exclude: asked.options.exclude,
         flat: asked.options.flat,
         pitch: None,
+        pixels_per_degree: deliver::PIXELS_PER_DEGREE,
         light,
         accept: asked.options.accept,
     };

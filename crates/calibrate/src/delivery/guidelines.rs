@@ -116,6 +116,7 @@ const fn level(name: &'static str, preset: &'static str) -> Level {
 const COMPARED: &str =
     "secondary: comparison of FADGI 2023, ISO 19264-1:2021 and Metamorfoze 2.0 (draft) at skandalski.pl";
 const VERSION_2: &str = "secondary: draft of June 2023 at preservationimaging.com";
+const REVERSED: &str = "secondary: the comparison at skandalski.pl, whose row of FADGI 2023 is read backwards (4, 3, 2 stars as ISO A, B, C)";
 const FADGI_2010: &str =
     "secondary: FADGI 2010 in translation at gxnsmy.com; the numbers of 2023 were not at hand";
 
@@ -139,6 +140,11 @@ pub const GUIDELINES: [Guideline; 3] = [
                 Metric::GainHighlights,
                 &[between(0.8, 1.1), between(0.7, 1.2), between(0.6, 1.3), between(0.5, 1.4)],
                 COMPARED,
+            ),
+            row(
+                Metric::GainOther,
+                &[between(0.7, 1.3), between(0.6, 1.4), between(0.3, 1.6), between(0.25, 1.7)],
+                REVERSED,
             ),
             row(Metric::Noise, &[most(1.0), most(2.0), most(3.0), most(4.0)], COMPARED),
             row(Metric::SamplingEfficiency, &[least(90.0), least(80.0), least(70.0), least(60.0)], COMPARED),
@@ -186,6 +192,24 @@ pub const GUIDELINES: [Guideline; 3] = [
             row(Metric::SamplingEfficiency, &[least(85.0), None, None], COMPARED),
         ],
     },
+];
+
+/// What is measured without a limit, and after what: no source at hand has a number for it.
+pub const UNLIMITED: [(Metric, &str); 3] = [
+    (
+        Metric::VisualNoise,
+        "ISO 15739:2013, annex B, by secondary sources (Imatest, Image Engineering), sensitivities of Johnson and Fairchild 2003 \
+         and Baxter et al. 2012; that of 2023 is another",
+    ),
+    (
+        Metric::DynamicRange,
+        "ISO 15739:2013, 6.4, by secondary sources (Kerr 2008), extrapolated by the noise of the greys: an estimate; the lower \
+         number can be relied on",
+    ),
+    (
+        Metric::Banding,
+        "Darkroot's own; FADGI 2016 names field artifacts and leaves their measure to the future",
+    ),
 ];
 
 #[cfg(test)]

@@ -4,7 +4,10 @@
 //! colours relative to D50, and those are compared with the reference. [`guidelines`] says what they have to be.
 
 pub mod guidelines;
-pub use guidelines::{Bound, GUIDELINES, Guideline, Level, Row, preset};
+pub use guidelines::{Bound, GUIDELINES, Guideline, Level, Row, UNLIMITED, preset};
+
+mod dynamic_range;
+pub use dynamic_range::DynamicRange;
 
 mod tones;
 pub use tones::{Grey, Step};
@@ -12,7 +15,7 @@ pub use tones::{Grey, Step};
 mod values;
 pub use values::{Found, Metric, Verdict};
 
-use darkroot_chart::Distortion;
+use darkroot_chart::{Banding, Distortion, PatchNoise};
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::difference::{de2000, de2000_sl1};
 use darkroot_colour::{Lab, Vector3, Xyz, white};
@@ -36,6 +39,8 @@ pub struct Delivery {
     pub greys: Vec<Grey>,
     /// What lies between two neighbours of them.
     pub steps: Vec<Step>,
+    /// How far they say that the picture reaches into the dark.
+    pub dynamic_range: Option<DynamicRange>,
     /// What other pictures and the edges of the chart tell.
     pub details: Details,
     /// What had to be assumed of the reference.
@@ -47,6 +52,8 @@ pub struct Delivery {
 pub struct Details {
     /// Differences over the picture of an even surface.
     pub uniformity: Option<Uniformity>,
+    /// Bands of rows and columns in that picture.
+    pub banding: Option<Banding>,
     /// Sharpness of slanted edges.
     pub edges: Option<Edges>,
     /// Pixels an inch of the original.
@@ -91,12 +98,12 @@ pub struct Edges {
 }
 
 /// Judges the patches of a finished picture. `patches` have linear light of the picture as their `rgb`, which `colour` turns
-/// into XYZ relative to D50; `noise` is the standard deviation of L\* in each. The reference is that under `light`, adapted
+/// into XYZ relative to D50; `noise` is that of each. The reference is that under `light`, adapted
 /// to D50 (Bradford): for D50 itself the colours as they are given, else those of the spectra, which are recovered where the
 /// reference has none.
 pub fn judge(
     patches: &[MeasuredPatch],
-    noise: &[f64],
+    noise: &[PatchNoise],
     colour: impl Fn([f64; 3]) -> Xyz,
     light: &LightSource,
     details: Details,
@@ -131,6 +138,7 @@ pub fn judge(
         sl1: Summary::of(&all(de2000_sl1)),
         p90: values::percentile(&plain, 0.9),
         steps: tones::steps(&greys),
+        dynamic_range: dynamic_range::dynamic_range(&greys),
         greys,
         details,
         notes,
@@ -166,7 +174,7 @@ mod tests {
             }
         };
         let patches: Vec<MeasuredPatch> = labs.iter().enumerate().map(patch).collect();
-        let noise = [0.5; 6];
+        let noise = [PatchNoise { lightness: 0.5, ..PatchNoise::default() }; 6];
         judge(&patches, &noise, |[x, y, z]| Xyz::new(x, y, z), &LightSource::assumed(), Details::default())
     }
 

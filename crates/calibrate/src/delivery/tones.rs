@@ -1,5 +1,6 @@
 //! The grey patches: tone response, white balance, gain modulation, noise.
 
+use darkroot_chart::PatchNoise;
 use darkroot_colour::difference::de2000;
 use darkroot_colour::{Lab, white};
 
@@ -21,8 +22,8 @@ pub struct Grey {
     pub found: Lab,
     /// What it should be.
     pub truth: Lab,
-    /// Standard deviation of L\* in it.
-    pub noise: f64,
+    /// Noise in it.
+    pub noise: PatchNoise,
 }
 
 impl Grey {
@@ -56,8 +57,8 @@ impl Step {
 }
 
 /// The greys among patches, each with its noise, from light to dark.
-pub(super) fn greys<'a>(patches: impl Iterator<Item = (&'a JudgedPatch, &'a f64)>) -> Vec<Grey> {
-    let grey = |(patch, noise): (&JudgedPatch, &f64)| {
+pub(super) fn greys<'a>(patches: impl Iterator<Item = (&'a JudgedPatch, &'a PatchNoise)>) -> Vec<Grey> {
+    let grey = |(patch, noise): (&JudgedPatch, &PatchNoise)| {
         let truth = patch.reference.lab(white::D50);
         let found = patch.corrected.lab(white::D50);
         (truth.a.hypot(truth.b) <= GREY).then(|| Grey {

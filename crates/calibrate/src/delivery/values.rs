@@ -23,6 +23,12 @@ pub enum Metric {
     GainOther,
     /// Largest standard deviation of L\* over the greys.
     Noise,
+    /// Largest visual noise over the greys.
+    VisualNoise,
+    /// Stops from saturation to where signal and noise are equal.
+    DynamicRange,
+    /// Largest standard deviation of L\* from line to line over an even surface.
+    Banding,
     /// Sampling efficiency: the frequency of 10 % response over half a cycle a pixel, percent.
     SamplingEfficiency,
     /// Largest response of slanted edges from 0.1 to 0.5 cycles a pixel.
@@ -47,6 +53,9 @@ impl Metric {
             Self::GainHighlights => "gain modulation, highlights",
             Self::GainOther => "gain modulation, elsewhere",
             Self::Noise => "noise, largest standard deviation of L*",
+            Self::VisualNoise => "visual noise, largest",
+            Self::DynamicRange => "dynamic range, stops",
+            Self::Banding => "banding, standard deviation of L* over lines",
             Self::SamplingEfficiency => "sampling efficiency (SFR10), %",
             Self::Sharpening => "sharpening, largest SFR",
             Self::Misregistration => "colour misregistration, pixels",
@@ -66,6 +75,9 @@ impl Metric {
             Self::GainHighlights => "gain in highlights",
             Self::GainOther => "gain elsewhere",
             Self::Noise => "noise",
+            Self::VisualNoise => "visual noise",
+            Self::DynamicRange => "dynamic range",
+            Self::Banding => "banding",
             Self::SamplingEfficiency => "sampling",
             Self::Sharpening => "sharpening",
             Self::Misregistration => "registration",
@@ -80,7 +92,9 @@ impl Metric {
             Self::SamplingEfficiency | Self::Sharpening | Self::Misregistration => {
                 "edges of grey patches that stand 2 to 30 degrees from the rows of pixels: turn the chart a little"
             }
-            Self::Illumination => "a picture of an even surface (`--flat`)",
+            Self::Illumination | Self::Banding => "a picture of an even surface (`--flat`)",
+            Self::VisualNoise => "grey patches of at least 24 pixels",
+            Self::DynamicRange => "five different greys, unclipped and with noise",
             Self::SamplingRate => "the distance between two patches (`--chart-pitch`)",
             Self::GainHighlights => "two greys lighter than L* 75 in the mean",
             Self::GainOther | Self::Tone | Self::WhiteBalance | Self::Noise => "grey patches",
@@ -142,7 +156,14 @@ impl Delivery {
             Metric::WhiteBalance => greys(super::Grey::colour_error),
             Metric::GainHighlights => gains(true),
             Metric::GainOther => gains(false),
-            Metric::Noise => greys(|grey| grey.noise),
+            Metric::Noise => greys(|grey| grey.noise.lightness),
+            Metric::VisualNoise => {
+                let seen = self.greys.iter().filter_map(|grey| grey.noise.visual);
+                Found::range(seen.map(|seen| seen.weighted())).map(|range| Found::one(range.high))
+            }
+            // The least can be relied on; a chart of paper says little more.
+            Metric::DynamicRange => self.dynamic_range.map(|r| Found { low: r.least, high: r.stops }),
+            Metric::Banding => self.details.banding.map(|b| Found::one(b.deviation())),
             Metric::SamplingEfficiency => edges.map(|e| Found::one(100.0 * e.sfr10 / 0.5)),
             Metric::Sharpening => edges.map(|e| Found::one(e.peak)),
             Metric::Misregistration => edges.map(|e| Found::one(e.misregistration)),

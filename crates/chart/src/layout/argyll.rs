@@ -46,7 +46,8 @@ pub(super) fn layout(name: &str, text: &str) -> Result<ChartLayout, LayoutError>
         }
     }
     let (columns, rows) = (columns.len(), rows.len());
-    Ok(ChartLayout { name: name.to_owned(), title: name.to_owned(), columns, rows, gap, hinge, patches })
+    let (name, title) = (name.to_owned(), name.to_owned());
+    Ok(ChartLayout { name, title, columns, rows, gap, hinge, patches, beside: None })
 }
 
 /// "A1" and "A01" are the same box.

@@ -117,7 +117,12 @@ impl ShotArgs {
     }
 
     /// A request for finished pictures. What only a shot of the sensor can have is refused.
-    pub(crate) fn delivery(&self, light: Option<LightSource>, pitch: Option<f64>) -> Result<DeliveryRequest> {
+    pub(crate) fn delivery(
+        &self,
+        light: Option<LightSource>,
+        pitch: Option<f64>,
+        pixels_per_degree: f64,
+    ) -> Result<DeliveryRequest> {
         if self.dark.is_some() || self.even_out.is_some() || self.correct_glare.is_some() {
             bail!(
                 "`--dark`, `--even-out` and `--correct-glare` are for raw shots: a finished picture is judged as it is"
@@ -132,6 +137,7 @@ impl ShotArgs {
             exclude: self.exclude.clone(),
             flat: self.flat.clone(),
             pitch,
+            pixels_per_degree,
             light,
             accept: self.accept,
         })

@@ -5,20 +5,18 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use darkroot::deliver::{
-    DeliveryRequest, Details, GUIDELINES, Grey, Guideline, JudgedPicture, Metric, Verdict, is_picture, judge,
-    preset,
+    DeliveryRequest, GUIDELINES, Guideline, JudgedPicture, Metric, UNLIMITED, Verdict, figures, is_picture,
+    judge, preset,
 };
 use darkroot::fault::ChartError;
 use darkroot::report::delivered;
 use darkroot::verify::{LogLine, Outcome as Judged, append};
 use darkroot::{Error, shown, write_text};
 
-use super::Verify;
+use super::{Verify, words};
 use crate::sandbox;
 use crate::{Common, Outcome};
 
-/// L* up to which greys count as one.
-const SAME: f64 = 1.0;
 /// Most pictures of a folder.
 const MOST: usize = 10_000;
 
@@ -79,6 +77,10 @@ pub(super) fn explain() -> Result<Outcome> {
             }
         }
     }
+    writeln!(out, "measured without a limit")?;
+    for (metric, source) in UNLIMITED {
+        writeln!(out, "    {:44} {:14} [{source}]", metric.name(), "")?;
+    }
     Ok(Outcome::Done)
 }
 
@@ -86,7 +88,7 @@ impl Verify {
     /// Judges finished pictures.
     pub(super) fn judge_pictures(&self, pictures: &Pictures, common: Common) -> Result<Outcome> {
         let light = self.light.as_deref().map(darkroot::light::find).transpose()?;
-        let request = self.shot.delivery(light, self.chart_pitch)?;
+        let request = self.shot.delivery(light, self.chart_pitch, self.pixels_per_degree)?;
         self.confine(pictures, &request, common)?;
         common.start_threads();
         let (mut judged, mut without, mut unreadable) = (Vec::new(), Vec::new(), 0usize);
@@ -107,7 +109,7 @@ impl Verify {
         let verdicts: Vec<Vec<Verdict>> = judged.iter().map(|found| self.verdicts(found)).collect();
         if !common.quiet {
             for (found, verdicts) in judged.iter().zip(&verdicts) {
-                self.say(found, verdicts);
+                words::say(found, verdicts, self.asked_in_words().as_deref());
             }
             if !without.is_empty() {
                 let (count, verb) = if without.len() == 1 {
@@ -120,6 +122,12 @@ impl Verify {
                     request.layout.title,
                     if without.len() == 1 { "was" } else { "were" }
                 ));
+            }
+        }
+        if self.json {
+            let mut out = crate::out::json();
+            for (found, verdicts) in judged.iter().zip(&verdicts) {
+                out.write_all((serde_json::to_string(&figures(found, verdicts))? + "\n").as_bytes())?;
             }
         }
         let lines: Vec<LogLine> = judged.iter().zip(&verdicts).map(|(j, v)| self.line(j, v)).collect();
@@ -176,56 +184,6 @@ impl Verify {
         })
     }
 
-    /// What a person is told of a picture.
-    fn say(&self, found: &JudgedPicture, verdicts: &[Verdict]) {
-        let delivery = &found.delivery;
-        let file = shown(&found.path);
-        crate::say(format_args!("{file}: {}", delivered::about(found)));
-        let (s, sl1) = (delivery.de2000, delivery.sl1);
-        crate::say(format_args!(
-            "  dE2000 mean {:.2}, median {:.2}, 95 % {:.2}, max {:.2} (SL = 1: mean {:.2}, max {:.2})",
-            s.mean, s.median, s.p95, s.max, sl1.mean, sl1.max
-        ));
-        let mut greys: Vec<&Grey> = Vec::new();
-        for grey in &delivery.greys {
-            // Large charts have many greys of one lightness: the one that is most off stands for them.
-            match greys.last_mut().filter(|last| (last.truth.l - grey.truth.l).abs() < SAME) {
-                Some(last) if last.lightness_error().abs() < grey.lightness_error().abs() => *last = grey,
-                Some(_) => {}
-                None => greys.push(grey),
-            }
-        }
-        let greys: Vec<String> =
-            greys.iter().map(|g| format!("{:.1} ({:+.2})", g.found.l, g.lightness_error())).collect();
-        crate::say(format_args!("  greys, L* (error): {}", greys.join(", ")));
-        say_details(&delivery.details);
-        for guideline in &GUIDELINES {
-            let levels: Vec<String> = guideline
-                .rows
-                .iter()
-                .map(|row| (row.metric.short(), delivered::level(guideline, row, found)))
-                .filter(|(_, level)| *level != "–")
-                .map(|(name, level)| format!("{name} {level}"))
-                .collect();
-            crate::say(format_args!("  {}: {}", guideline.name, levels.join(", ")));
-        }
-        for note in &delivery.notes {
-            crate::say(format_args!("  note: {}", shown(note)));
-        }
-        for verdict in verdicts {
-            let mark = match verdict.kept() {
-                Some(true) => "PASS",
-                Some(false) => "FAIL",
-                None => "    ",
-            };
-            crate::say(format_args!("  {mark} {verdict} [{}]", verdict.source));
-        }
-        if let Some(asked) = self.asked_in_words() {
-            let passed = verdicts.iter().all(|verdict| verdict.kept() != Some(false));
-            crate::say(format_args!("{file}: {} ({asked})", if passed { "PASS" } else { "FAIL" }));
-        }
-    }
-
     fn line(&self, found: &JudgedPicture, verdicts: &[Verdict]) -> LogLine {
         let kept = verdicts.iter().all(|verdict| verdict.kept() != Some(false));
         LogLine {
@@ -258,33 +216,5 @@ impl Verify {
             ([one], [verdicts]) => delivered::html(one, &request.layout, asked.as_deref(), verdicts),
             _ => delivered::table(judged, &request.layout, lines, asked.as_deref(), verdicts),
         }
-    }
-}
-
-/// What edges, the grid and an even surface tell.
-fn say_details(details: &Details) {
-    if let Some(edges) = details.edges {
-        crate::say(format_args!(
-            "  edges ({}): SFR50 {:.3}, SFR10 {:.3} cycles a pixel, largest response {:.2}, red and blue off by {:.2} pixels",
-            edges.count, edges.sfr50, edges.sfr10, edges.peak, edges.misregistration
-        ));
-    }
-    if let Some(scale) = details.scale {
-        let stated = scale.stated.map_or("states none".to_owned(), |stated| {
-            format!("stated {stated:.0}, {:+.1} %", 100.0 * (scale.found / stated - 1.0))
-        });
-        crate::say(format_args!("  scale: {:.1} pixels an inch ({stated})", scale.found));
-    }
-    if let Some(grid) = details.distortion {
-        crate::say(format_args!(
-            "  grid ({} patches): distortion {:.2} % of the diagonal, {:.2} pixels",
-            grid.patches, grid.percent, grid.pixels
-        ));
-    }
-    if let Some(even) = details.uniformity {
-        crate::say(format_args!(
-            "  even surface: luminance differs by {:.1} %, L* by {:.2}, a*b* by {:.2}",
-            even.luminance, even.lightness, even.colour
-        ));
     }
 }

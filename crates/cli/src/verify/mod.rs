@@ -1,12 +1,13 @@
 //! `darkroot verify`.
 
 mod delivered;
+mod words;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use darkroot::deliver::GUIDELINES;
+use darkroot::deliver::{GUIDELINES, PIXELS_PER_DEGREE};
 use darkroot::shot::Correct;
 use darkroot::store::Found;
 use darkroot::verify::{
@@ -59,6 +60,14 @@ pub(crate) struct Verify {
     /// Millimetres between the middles of two patches side by side, to tell pixels an inch of a finished picture
     #[arg(long, value_name = "MM", value_parser = crate::values::millimetres)]
     chart_pitch: Option<f64>,
+
+    /// Pixels of a finished picture in a degree of sight, for visual noise: 41 are a screen of 100 pixels an inch at 60 cm
+    #[arg(long, value_name = "NUMBER", default_value_t = PIXELS_PER_DEGREE, value_parser = crate::values::pixels_per_degree)]
+    pixels_per_degree: f64,
+
+    /// Print what was found in finished pictures as JSON, a line a picture
+    #[arg(long)]
+    json: bool,
 
     /// Write an HTML page on finished pictures: the chart as it was found, patches, limits, levels
     #[arg(long, value_name = "FILE")]
@@ -114,9 +123,9 @@ impl Verify {
                 "give a profile and a raw shot of a chart, or finished pictures (TIFF, JPEG, PNG), or a folder of them"
             );
         };
-        if self.report.is_some() {
+        if self.report.is_some() || self.json {
             bail!(
-                "`--report` is for finished pictures; `darkroot profile --report` writes one on a raw shot"
+                "`--report` and `--json` are for finished pictures; `darkroot profile --report` writes a page on a raw shot"
             );
         }
         let Some(profile) = profile.to_str() else { bail!("the profile's name is not UTF-8") };

@@ -11,6 +11,7 @@ mod finding;
 mod making;
 mod series;
 mod tables;
+mod target;
 mod verifying;
 
 const SIZE: Size = Size { width: 488, height: 328 };

@@ -1,7 +1,7 @@
-//! Sharpness of a finished picture, by the edges of the chart's grey patches.
+//! Sharpness of a finished picture, by the slanted edges of the target, or those of its grey patches.
 
 use darkroot_calibrate::delivery::Edges;
-use darkroot_chart::{ChartLayout, EdgeResponse, Quad, slanted_edge};
+use darkroot_chart::{ChartLayout, EdgeLine, EdgeResponse, Quad, slanted_edge};
 use darkroot_colour::statistics::median;
 use darkroot_photo::Mosaic;
 
@@ -11,12 +11,13 @@ const LIGHT: f64 = 45.0;
 /// Fewest edges that tell.
 const FEWEST: usize = 3;
 
-/// The median over all edges that tell; `None` where too few do.
+/// The median over all edges that tell, `own` being those that the target has beside its grid; `None` where too few do.
 pub(super) fn edges(
     light: &Mosaic<f32>,
     luminance: [f64; 3],
     patches: &[Quad],
     layout: &ChartLayout,
+    own: &[EdgeLine],
 ) -> Option<Edges> {
     let is_grey = |i: &usize| {
         let lab = layout.patches[*i].lab;
@@ -24,7 +25,12 @@ pub(super) fn edges(
     };
     let greys: Vec<Quad> =
         (0..patches.len().min(layout.patches.len())).filter(is_grey).map(|i| patches[i]).collect();
-    let found = slanted_edge::responses(light, luminance, &greys, layout.gap);
+    // Edges that a target has for this purpose are better than those of its patches.
+    let made_for_it = slanted_edge::responses_of(light, luminance, own);
+    let found = match made_for_it.len() {
+        FEWEST.. => made_for_it,
+        _ => slanted_edge::responses(light, luminance, &greys, layout.gap),
+    };
     if found.len() < FEWEST {
         return None;
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use darkroot_calibrate::delivery::Uniformity;
+use darkroot_chart::{Banding, banding};
 use darkroot_colour::{Lab, Xyz, white};
 use darkroot_encode::source_profile::LINEAR;
 use darkroot_photo::Mosaic;
@@ -13,12 +14,14 @@ use crate::Error;
 /// Parts of the picture across and down.
 const PARTS: [usize; 2] = [12, 8];
 
-/// Differences over a finished picture of an even surface: the means of 12 x 8 parts of it against each other.
+/// Differences over a finished picture of an even surface, the means of 12 x 8 parts of it against each other, and the bands in it.
 ///
 /// # Errors
 /// A file that cannot be read, or a profile that tells no colours.
-pub fn uniformity(path: &Path) -> Result<Uniformity, Error> {
-    Ok(of_light(&Opened::read(path)?.light))
+pub(super) fn evenness(path: &Path) -> Result<(Uniformity, Option<Banding>), Error> {
+    let light = Opened::read(path)?.light;
+    let to_xyz = LINEAR.to_xyz_under(white::D50);
+    Ok((of_light(&light), banding(&light, [0, 1, 2].map(|c| to_xyz[(1, c)]))))
 }
 
 fn of_light(light: &Mosaic<f32>) -> Uniformity {

@@ -3,12 +3,13 @@
 
 mod edges;
 mod even;
+mod figures;
+mod target;
 
 use std::path::{Path, PathBuf};
 
 use darkroot_calibrate::shot::Chart;
-use darkroot_calibrate::{MeasuredPatch, ShotError};
-use darkroot_chart::{ChartLayout, Measurement, Quad, Reference, distortion, lightness_noise};
+use darkroot_chart::{ChartLayout, Quad, Reference, distortion, patch_noise};
 use darkroot_colour::temperature::Temperature;
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
 use darkroot_encode::SourceProfile;
@@ -16,16 +17,19 @@ use darkroot_encode::source_profile::LINEAR;
 use darkroot_photo::{Layout, Mosaic, Size};
 
 pub use darkroot_calibrate::delivery::{
-    Bound, Delivery, Details, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row, Scale, Step,
-    Uniformity, Verdict, preset,
+    Bound, Delivery, Details, DynamicRange, Edges, Found, GUIDELINES, Grey, Guideline, Level, Metric, Row,
+    Scale, Step, UNLIMITED, Uniformity, Verdict, preset,
 };
-pub use even::uniformity;
+pub use darkroot_chart::banding::{Banding, Bands};
+pub use darkroot_chart::noise::visual::PIXELS_PER_DEGREE;
+pub use figures::figures;
 
 use crate::fault::ChartError;
 use crate::light::LightSource;
 use crate::shot::rendered::{self, is_rendered};
 use crate::shot::{View, locate_in};
 use crate::{Error, files, provenance};
+use target::{Target, pitch_of};
 
 /// Mireds between two lights, or between the white of a picture and D50, from which they are not the same.
 const OTHER_LIGHT: f64 = 50.0;
@@ -45,6 +49,8 @@ pub struct DeliveryRequest {
     pub flat: Option<PathBuf>,
     /// Millimetres between the middles of two patches side by side, where they are known.
     pub pitch: Option<f64>,
+    /// Pixels of the picture in a degree of sight, for visual noise; [`PIXELS_PER_DEGREE`] is usual.
+    pub pixels_per_degree: f64,
     /// The light that the chart was taken in, where it is named.
     pub light: Option<LightSource>,
     /// Judge a picture whose light or balance is another all the same.
@@ -87,6 +93,8 @@ pub struct JudgedPicture {
     pub windows: Vec<Quad>,
     /// How sure that is, 0..=1.
     pub confidence: f64,
+    /// Pixels in a degree of sight, by which visual noise is told.
+    pub pixels_per_degree: f64,
     /// The figures.
     pub delivery: Delivery,
     /// Linear light of the brightest grey ([`LINEAR`]), which drift is told by.
@@ -112,19 +120,21 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
     let chart = Chart::new(&request.layout, &request.reference).map_err(|e| Error::chart(path, e))?;
     let (light, light_from) = light_of(&opened.says, request).map_err(of_chart)?;
 
-    let patches = measured(&view.frame.light, &place.windows, &chart, &request.exclude)
-        .map_err(|e| Error::chart(path, e))?;
+    let target = Target::new(&place, &chart, &request.reference).map_err(|e| Error::chart(path, e))?;
+    let patches = target.measured(&view.frame.light, &request.exclude).map_err(|e| Error::chart(path, e))?;
     let to_xyz = LINEAR.to_xyz_under(white::D50);
     let luminance = [0, 1, 2].map(|c| to_xyz[(1, c)]);
-    let noise = lightness_noise(&view.frame.light, luminance, &place.windows);
+    let noise = patch_noise(&view.frame.light, &to_xyz, &target.windows, request.pixels_per_degree);
+    let even = request.flat.as_deref().map(even::evenness).transpose()?;
     let details = Details {
-        edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout),
-        scale: request.pitch.map(|pitch| Scale {
+        edges: edges::edges(&view.frame.light, luminance, &place.patches, &request.layout, &target.edges),
+        scale: request.pitch.or_else(|| pitch_of(&request.layout)).map(|pitch| Scale {
             found: pitch_in_pixels(&place.patches, request.layout.columns) / (pitch / 25.4),
             stated: opened.resolution,
         }),
         distortion: distortion::distortion(&view.frame.light, luminance, &place.patches, &request.layout),
-        uniformity: request.flat.as_deref().map(uniformity).transpose()?,
+        uniformity: even.map(|(uniformity, _)| uniformity),
+        banding: even.and_then(|(_, banding)| banding),
     };
     let colour = |rgb: [f64; 3]| xyz(&to_xyz, rgb);
     let mut delivery = darkroot_calibrate::delivery::judge(&patches, &noise, colour, &light, details);
@@ -143,39 +153,13 @@ pub fn judge(path: &Path, request: &DeliveryRequest) -> Result<JudgedPicture, Er
         light,
         light_from,
         corners: place.corners,
-        windows: place.windows,
+        windows: target.windows,
         confidence: place.confidence,
+        pixels_per_degree: request.pixels_per_degree,
         delivery,
         white,
         view,
     })
-}
-
-/// Measures the patches of a chart, each in linear light.
-fn measured(
-    light: &Mosaic<f32>,
-    windows: &[Quad],
-    chart: &Chart<'_>,
-    exclude: &[String],
-) -> Result<Vec<MeasuredPatch>, ShotError> {
-    let measured = darkroot_chart::measure(light, [f32::INFINITY; 3], windows);
-    let name = |i: usize| chart.layout.patches[i].name.as_str();
-    if let Some(i) = measured.iter().position(|m| !m.is_complete()) {
-        return Err(ShotError::TooSmall { patch: name(i).to_owned() });
-    }
-    let is = |i: usize, excluded: &str| name(i).eq_ignore_ascii_case(excluded);
-    if let Some(unknown) = exclude.iter().find(|e| !(0..measured.len()).any(|i| is(i, e))) {
-        return Err(ShotError::NoPatch { name: unknown.clone() });
-    }
-    let patch = |(i, m): (usize, &Measurement)| MeasuredPatch {
-        name: name(i).to_owned(),
-        rgb: m.mean,
-        uncertainty: m.uncertainty(),
-        clipped: m.clipped,
-        reference: chart.colours[i].clone(),
-        excluded: exclude.iter().any(|e| is(i, e)).then(|| "left out by hand".to_owned()),
-    };
-    Ok(measured.iter().enumerate().map(patch).collect())
 }
 
 /// Distance between the middles of neighbours in a row, the mean over the chart.

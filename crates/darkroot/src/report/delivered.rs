@@ -7,7 +7,7 @@ use darkroot_colour::{Lab, RgbSpace, Vector3, white};
 use darkroot_encode::source_profile::LINEAR;
 use maud::{Markup, html};
 
-use super::{plots, shown, swatches};
+use super::{measured, plots, shown, swatches};
 use crate::deliver::{GUIDELINES, Grey, Guideline, JudgedPicture, LightFrom, Verdict};
 use crate::from_chart;
 use crate::page::{STYLE, base64, page};
@@ -51,12 +51,13 @@ fn section(
             (swatches(&as_shown(&judged.delivery.patches), layout))
             p.legend { "dE2000 of each patch, and without lightness." }
             div.columns {
-                (greys(judged))
+                (measured::greys(judged))
                 (plots::vectors(&judged.delivery.patches))
                 (plots::lightness(&judged.delivery.patches))
             }
-            (details(judged))
+            (measured::details(judged))
             (levels(judged))
+            (measured::unlimited(judged))
             @if !judged.delivery.notes.is_empty() {
                 ul.notes { @for note in &judged.delivery.notes { li { (note) } } }
             }
@@ -107,7 +108,7 @@ pub fn table(
                 td { (number(found.delivery.de2000.max)) }
                 td { (greys(found, |grey| grey.lightness_error().abs())) }
                 td { (greys(found, Grey::colour_error)) }
-                td { (greys(found, |grey| grey.noise)) }
+                td { (greys(found, |grey| grey.noise.lightness)) }
             }
         }
     };
@@ -178,58 +179,6 @@ fn limits(verdicts: &[Verdict]) -> Markup {
                         td { small { (verdict.source) } }
                     }
                 }
-            }
-        }
-    }
-}
-
-fn greys(judged: &JudgedPicture) -> Markup {
-    html! {
-        table.models {
-            caption { "Greys" }
-            tr { th { "patch" } th { "L*" } th { "reference" } th { "error" } th { "dE(a*b*)" } th { "noise" } }
-            @for grey in &judged.delivery.greys {
-                tr {
-                    td { (grey.name) }
-                    td { (format!("{:.2}", grey.found.l)) }
-                    td { (format!("{:.2}", grey.truth.l)) }
-                    td { (format!("{:+.2}", grey.lightness_error())) }
-                    td { (format!("{:.2}", grey.colour_error())) }
-                    td { (format!("{:.2}", grey.noise)) }
-                }
-            }
-        }
-    }
-}
-
-/// What edges, the grid and an even surface tell.
-fn details(judged: &JudgedPicture) -> Markup {
-    let details = &judged.delivery.details;
-    let mut rows: Vec<(&str, String)> = Vec::new();
-    if let Some(edges) = details.edges {
-        rows.push(("slanted edges", edges.count.to_string()));
-        rows.push(("SFR50, cycles a pixel", format!("{:.3}", edges.sfr50)));
-        rows.push(("SFR10, cycles a pixel, at most 0.5", format!("{:.3}", edges.sfr10)));
-        rows.push(("largest response", format!("{:.2}", edges.peak)));
-        rows.push(("red and blue beside green, pixels", format!("{:.2}", edges.misregistration)));
-    }
-    if let Some(scale) = details.scale {
-        rows.push(("pixels an inch, by the chart", format!("{:.1}", scale.found)));
-        rows.extend(scale.stated.map(|stated| ("pixels an inch, as stated", format!("{stated:.1}"))));
-    }
-    if let Some(grid) = details.distortion {
-        rows.push(("distortion of the grid, % of the diagonal", format!("{:.2}", grid.percent)));
-    }
-    if let Some(even) = details.uniformity {
-        rows.push(("even surface: luminance, %", format!("{:.1}", even.luminance)));
-        rows.push(("even surface: L*", format!("{:.2}", even.lightness)));
-        rows.push(("even surface: a*b*", format!("{:.2}", even.colour)));
-    }
-    html! {
-        @if !rows.is_empty() {
-            table.models {
-                caption { "Details and geometry" }
-                @for (what, value) in &rows { tr { td { (what) } td { (value) } } }
             }
         }
     }

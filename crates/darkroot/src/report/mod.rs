@@ -1,6 +1,7 @@
 //! The report on a profile: one HTML page with everything in it, nothing from the network.
 
 pub mod delivered;
+mod measured;
 mod plots;
 mod shown;
 mod tables;
@@ -113,7 +114,9 @@ fn row(gate: &Gate) -> Markup {
 fn swatches(patches: &[JudgedPatch], layout: &ChartLayout) -> Markup {
     const SIDE: usize = 84;
     const THIRD: usize = (SIDE - 4) / 3;
-    let view_box = format!("0 0 {} {}", layout.columns * SIDE, layout.rows * (SIDE + 6));
+    // What stands beside the grid goes on below it.
+    let rows = patches.len().div_ceil(layout.columns.max(1));
+    let view_box = format!("0 0 {} {}", layout.columns * SIDE, rows * (SIDE + 6));
     let one = |(i, patch): (usize, &JudgedPatch)| {
         let (x, y) = ((i % layout.columns) * SIDE, (i / layout.columns) * (SIDE + 6));
         // As measured: balanced camera RGB taken for linear sRGB.

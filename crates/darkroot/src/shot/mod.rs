@@ -175,11 +175,12 @@ pub(crate) fn locate_in(
         Some(corners) => find_chart::by_hand(layout, corners)?,
         None => find_chart::best(view, layout)?,
     };
+    let beside = layout.beside.as_ref().and_then(|beside| beside.windows(&place.corners, 0.0));
     let inside = |[x, y]: &[f64; 2]| {
         (-0.5..=view.size.width as f64 - 0.5).contains(x)
             && (-0.5..=view.size.height as f64 - 0.5).contains(y)
     };
-    if place.corners.iter().all(inside) {
+    if place.corners.iter().chain(beside.iter().flatten().flatten()).all(inside) {
         Ok(place)
     } else {
         Err(ChartError::Outside { width: view.size.width, height: view.size.height })

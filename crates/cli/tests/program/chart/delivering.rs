@@ -114,6 +114,55 @@ fn a_reproduction_is_as_good_as_the_profile_in_every_space_and_number_of_bits() 
 }
 
 #[test]
+fn noise_that_is_seen_range_and_bands_are_told_in_words_as_json_and_on_the_page() {
+    let desk = laboratory(&daylight(), "D50");
+    reproduced(&desk, "chart.tif", &["--space", "ecirgb-v2"]);
+    let even = Exposure { noise: Some(4), ..daylight() };
+    let flat = expose(&Scene::flat(SIZE, Spectrum::constant(0.5)), &Camera::simulated_one(), &even);
+    desk.put("flat.dng", dng::write(&flat, dng::Storage::Uncompressed));
+    desk.develop(&["flat.dng", "-o", "flat.tif", "--look", "reproduction", "--profile", "p.toml"]);
+    let asked = ["verify", "chart.tif", "--flat", "flat.tif"];
+    let run = desk.run(&[&asked[..], &["--report", "r.html", "--json"]].concat());
+    for words in [
+        "visual noise (ISO 15739:2013, 41 pixels a degree)",
+        "dynamic range: ",
+        "banding, L* over lines: rows none above",
+    ] {
+        assert!(run.err.contains(words), "no `{words}` in {}", run.err);
+    }
+    let told = figures(&run);
+    let seen = |told: &serde_json::Value| {
+        let greys = told["greys"].as_array().unwrap().clone();
+        greys.iter().map(|grey| grey["visual_noise"]["weighted"].as_f64().unwrap()).fold(0.0, f64::max)
+    };
+    let range = &told["dynamic_range"];
+    let [stops, least, shown] = ["stops", "least", "shown"].map(|name| range[name].as_f64().unwrap());
+    // The camera has 13.5 stops in a pixel, and interpolation averages some of its noise away.
+    assert!(least <= stops && stops < 17.0 && shown < 6.0 && least > shown, "{range}");
+    let metrics = told["metrics"].as_array().unwrap();
+    let of = |name: &str| metrics.iter().find(|m| m["metric"].as_str().unwrap().starts_with(name)).unwrap();
+    assert!((of("visual noise")["found"][1].as_f64().unwrap() - seen(&told)).abs() < 1e-9);
+    assert_eq!(of("banding")["found"], serde_json::json!([0.0, 0.0]));
+    // From farther away less of it is seen.
+    let far = desk.run(&[&asked[..], &["-q", "--json", "--pixels-per-degree", "160"]].concat());
+    let far = figures(&far);
+    assert!(seen(&far) < 0.6 * seen(&told), "{} {}", seen(&far), seen(&told));
+    let page = String::from_utf8(desk.read("r.html")).unwrap();
+    for words in [
+        "Measured without a limit",
+        "ISO 15739:2013, annex B",
+        "dynamic range, stops that can be relied on",
+        "banding of rows",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    let explained = desk.run(&["verify", "--explain"]);
+    assert!(explained.out.contains("measured without a limit") && explained.out.contains("visual noise"));
+    desk.fails(2, &["verify", "chart.tif", "--pixels-per-degree", "1"], &["pixels"]);
+    desk.fails(2, &["verify", "p.toml", "chart.dng", "--json"], &["--json"]);
+}
+
+#[test]
 fn what_does_not_keep_its_limits_fails_and_says_by_how_much() {
     let desk = laboratory(&daylight(), "D50");
     desk.develop(&["chart.dng", "-o", "neutral.tif", "--profile", "p.toml", "--space", "ecirgb-v2"]);
