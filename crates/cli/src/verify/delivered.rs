@@ -125,10 +125,7 @@ impl Verify {
             }
         }
         if self.json {
-            let mut out = crate::out::json();
-            for (found, verdicts) in judged.iter().zip(&verdicts) {
-                out.write_all((serde_json::to_string(&figures(found, verdicts))? + "\n").as_bytes())?;
-            }
+            print(&judged, &verdicts)?;
         }
         let lines: Vec<LogLine> = judged.iter().zip(&verdicts).map(|(j, v)| self.line(j, v)).collect();
         if let Some(log) = &self.log {
@@ -217,4 +214,13 @@ impl Verify {
             _ => delivered::table(judged, &request.layout, lines, asked.as_deref(), verdicts),
         }
     }
+}
+
+/// Prints every figure as JSON, a line a picture.
+fn print(judged: &[JudgedPicture], verdicts: &[Vec<Verdict>]) -> Result<()> {
+    let mut out = crate::out::json();
+    for (found, verdicts) in judged.iter().zip(verdicts) {
+        out.write_all((serde_json::to_string(&figures(found, verdicts))? + "\n").as_bytes())?;
+    }
+    Ok(())
 }
