@@ -7,7 +7,8 @@
 //! The standard was not at hand. Its steps are as Imatest ("ISO 15739") and Image Engineering ("Visual noise: the difference in
 //! implementation") describe them. The sensitivities are those of Johnson and Fairchild, "A Top Down Description of S-CIELAB
 //! and CIEDE2000" (2003), that for A on the scale of Baxter et al., "Development of the I3A CPIQ spatial metrics" (2012, 3 at
-//! its largest), those of colours 1 at frequency 0. The edition of 2023 has other sensitivities and another sum.
+//! its largest), those of colours 1 at frequency 0. The opponent signals and the blue-yellow sensitivity could not be compared with
+//! a copy of a source. The edition of 2023 has other sensitivities and another sum.
 
 use darkroot_colour::adaptation::bradford;
 use darkroot_colour::{Matrix3, Vector3, Xyz, white};
@@ -40,7 +41,7 @@ pub struct VisualNoise {
 }
 
 impl VisualNoise {
-    /// Visual noise, their weighted sum (ISO 15739:2013, B.4): about 1 is just seen.
+    /// Visual noise, their weighted sum (ISO 15739:2013, B.4).
     pub fn weighted(&self) -> f64 {
         self.l + 0.852 * self.u + 0.323 * self.v
     }
