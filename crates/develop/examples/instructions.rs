@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout)]
 
 use std::hint::black_box;
+use std::sync::Arc;
 
 use darkroot_colour::{RgbSpace, TransferCurve};
 use darkroot_develop::demosaic::Method;
@@ -13,7 +14,10 @@ use darkroot_develop::level::Levels;
 use darkroot_develop::sharpen::Sharpener;
 use darkroot_develop::tone::{Curve, Tones};
 use darkroot_develop::transfer::Encoder;
-use darkroot_develop::{Demosaic, Look, balance, correct, demosaic, gamut, sharpen, tone, transfer};
+use darkroot_develop::{
+    Analysis, Cancel, Demosaic, Geometry, Look, Recipe, Scale, balance, correct, demosaic, gamut, plan,
+    sharpen, tone, transfer,
+};
 use darkroot_photo::{Counts, Display, Rgb, Scene, Toned};
 use darkroot_profile::Order;
 
@@ -69,6 +73,18 @@ fn tone_and_gamut() -> Option<Ready> {
     }))
 }
 
+/// A view of 1024 x 512 pixels that is interpolated, and with `angle` 0 the same without: what the map costs is the difference.
+fn warped(angle: f64) -> Option<Ready> {
+    let analysis = Analysis::deferred(Arc::new(capture()));
+    let geometry = Geometry { straighten: angle, ..Geometry::default() };
+    let recipe = Recipe { geometry, ..Recipe::default() };
+    let plan = plan(&analysis, None, &recipe).ok()?;
+    let cancel = Cancel::default();
+    Some(Box::new(move || {
+        black_box(plan.render(plan.whole(Scale::FULL), &cancel).ok());
+    }))
+}
+
 fn to_8_bits() -> Option<Ready> {
     let encoder = Encoder::new(TransferCurve::Srgb);
     let display = planes::<Display>();
@@ -76,7 +92,7 @@ fn to_8_bits() -> Option<Ready> {
     Some(Box::new(move || transfer::encode(display.planes(), &encoder, black_box(&mut samples))))
 }
 
-const STAGES: [&str; 8] = [
+const STAGES: [&str; 10] = [
     "level and balance",
     "Bayer",
     "X-Trans",
@@ -85,6 +101,8 @@ const STAGES: [&str; 8] = [
     "order 4",
     "tone and gamut",
     "transfer to 8 bits",
+    "as it is",
+    "straightened",
 ];
 
 fn ready(stage: &str) -> Option<Ready> {
@@ -97,6 +115,8 @@ fn ready(stage: &str) -> Option<Ready> {
         "order 4" => Some(correction(Order::Four)),
         "tone and gamut" => tone_and_gamut(),
         "transfer to 8 bits" => to_8_bits(),
+        "as it is" => warped(0.0),
+        "straightened" => warped(0.5),
         _ => None,
     }
 }

@@ -99,8 +99,11 @@ impl<'a> Neighbourhood<'a> {
         ((x - around as isize, y - around as isize), size)
     }
 
-    /// How many columns a tile best has, where so many would be best for pixels of the frame as they are.
+    /// How many columns a tile best has, where so many would be best for pixels of the frame as they are. Twice as many where the
+    /// lens is corrected: tiles overlap more then.
     pub(crate) fn columns(&self, columns: usize) -> usize {
+        let corrects = self.warp.is_some() || self.base.lateral.is_some();
+        let columns = if corrects { 2 * columns } else { columns };
         self.warp.as_ref().map_or(columns, |(warp, _)| warp.columns(columns))
     }
 

@@ -11,6 +11,9 @@ mod lay;
 mod lens;
 mod perspective;
 mod resample;
+mod runs;
+#[cfg(test)]
+mod runs_tests;
 mod taps;
 mod vignetting;
 mod warp;

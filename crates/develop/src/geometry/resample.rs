@@ -3,6 +3,7 @@
 use darkroot_colour::simd::vectorised;
 use darkroot_photo::{CameraSpace, Rect, Rgb};
 
+use super::runs::{self, Lines, within};
 use super::taps::{GROUP, Taps};
 use super::warp::{Places, Warp};
 
@@ -16,6 +17,8 @@ pub(crate) struct Scratch {
     /// Of a row of the picture: places, and what lies there.
     places: Vec<[f64; 2]>,
     found: Vec<f32>,
+    /// For lines that run along the frame.
+    lines: runs::Scratch,
 }
 
 /// Makes `out` the part `rect` of the picture. `camera` holds `source`, the part of the frame that [`Warp::needs`] said.
@@ -30,7 +33,24 @@ pub(crate) fn resample(
     out: &mut Rgb<CameraSpace>,
 ) {
     out.resize(rect.size());
-    let Scratch { pixels, patch, places: row, found } = scratch;
+    match Lines::of(&warp.taps, places) {
+        Some(lines) => {
+            lines.resample(warp, (camera, source), places, rect, &mut scratch.lines, out);
+        }
+        None => one_by_one(warp, (camera, source), places, rect, scratch, out),
+    }
+}
+
+/// As [`resample`], whatever the map does.
+pub(super) fn one_by_one(
+    warp: &Warp,
+    (camera, source): (&Rgb<CameraSpace>, Rect),
+    places: &Places,
+    rect: Rect,
+    scratch: &mut Scratch,
+    out: &mut Rgb<CameraSpace>,
+) {
+    let Scratch { pixels, patch, places: row, found, .. } = scratch;
     interleave(camera, pixels);
     row.resize(rect.width, [0.0; 2]);
     found.resize(LANES * rect.width, 0.0);
@@ -158,7 +178,7 @@ fn mean_of_few(
             }
         }
     }
-    within((sum, low, high), out);
+    all_within((sum, low, high), out);
 }
 
 /// The weighted mean of the pixels from the first one on, within their range: down the columns of a group, then across.
@@ -184,15 +204,14 @@ fn mean(pixels: &[f32], width: usize, (columns, rows): (&[f32], &[f32]), out: &m
             }
         }
     }
-    within((sum, low, high), out);
+    all_within((sum, low, high), out);
 }
 
-/// A sum, held within a range.
+/// Sums, held within ranges.
 #[inline(always)]
-fn within((sum, low, high): ([f32; LANES], [f32; LANES], [f32; LANES]), out: &mut [f32]) {
+fn all_within((sum, low, high): ([f32; LANES], [f32; LANES], [f32; LANES]), out: &mut [f32]) {
     for (i, out) in out.iter_mut().enumerate().take(LANES) {
-        let v = if sum[i] < high[i] { sum[i] } else { high[i] };
-        *out = if v > low[i] { v } else { low[i] };
+        *out = within(sum[i], low[i], high[i]);
     }
 }
 

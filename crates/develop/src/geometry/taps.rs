@@ -1,7 +1,7 @@
 //! Weights of the pixels from which a place between them is interpolated.
 
 /// Places between two pixels that are told apart.
-const PHASES: usize = 256;
+pub(super) const PHASES: usize = 256;
 /// Zeros of the kernel on each side.
 const LOBES: f64 = 3.0;
 /// Weights come in groups of so many: as many as one place takes where nothing is made smaller.
@@ -70,14 +70,33 @@ impl Taps {
     #[inline(always)]
     pub(super) fn few(&self, place: f64) -> Option<(isize, &[f32; GROUP])> {
         let (first, phase) = self.first(place);
-        let all = if self.padded == GROUP { self.weights.as_chunks::<GROUP>().0 } else { &[] };
-        all.get(phase).map(|weights| (first, weights))
+        self.plain().get(phase).map(|weights| (first, weights))
+    }
+
+    /// Whether nothing is made smaller: a place is then made of one group.
+    pub(super) fn is_plain(&self) -> bool {
+        self.padded == GROUP
+    }
+
+    /// The weights of each phase, where nothing is made smaller.
+    pub(super) fn plain(&self) -> &[[f32; GROUP]] {
+        if self.is_plain() { self.weights.as_chunks::<GROUP>().0 } else { &[] }
+    }
+
+    /// A place in parts of a pixel from the middle of the first one, to the nearest; places are within a few pictures of the frame.
+    #[inline(always)]
+    pub(super) fn parts(place: f64) -> i32 {
+        // Floor by adding a number beyond which there are no fractions: libraries' floor is a call on old processors, and
+        // conversions that saturate are slow.
+        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        let v = (place - 0.5) * PHASES as f64 + 0.5;
+        let nearest = v + WHOLE;
+        (nearest.to_bits() as i32).wrapping_sub(i32::from(nearest - WHOLE > v))
     }
 
     #[inline(always)]
     fn first(&self, place: f64) -> (isize, usize) {
-        // In parts of a pixel, to the nearest; places are within a few pictures of the frame.
-        let parts = ((place - 0.5) * PHASES as f64 + 0.5).floor() as i32;
+        let parts = Self::parts(place);
         let first = (parts >> PHASES.trailing_zeros()) as isize + 1 - (self.count / 2) as isize;
         (first, (parts & (PHASES as i32 - 1)) as usize)
     }
@@ -101,6 +120,18 @@ fn soft(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn parts_are_counted_from_below() {
+        for (place, parts) in [(0.5, 0), (0.0, -128), (7.25, 1728), (-3.0, -896), (30_000.123, 7_679_903)] {
+            assert_eq!(Taps::parts(place), parts, "{place}");
+        }
+        for i in -40_000..40_000 {
+            let place = f64::from(i) * 0.013;
+            let v = (place - 0.5) * PHASES as f64 + 0.5;
+            assert_eq!(f64::from(Taps::parts(place)), v.floor(), "{place}");
+        }
+    }
 
     #[test]
     fn a_pixel_is_itself_and_even_light_stays() {

@@ -33,6 +33,13 @@ pub(crate) struct Places {
     nodes: Vec<Vec<[f64; 2]>>,
 }
 
+/// Lines of the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Axis {
+    Rows,
+    Columns,
+}
+
 impl Warp {
     /// `reduction` is how many pixels of the frame one of the picture stands for, along each axis; `sharpening` how much a smaller
     /// picture is sharpened.
@@ -106,6 +113,17 @@ impl Warp {
     }
 }
 
+/// How far the middle of a pixel lies between two nodes.
+#[inline(always)]
+fn share(v: usize) -> f64 {
+    ((v % STEP) as f64 + 0.5) / STEP as f64
+}
+
+#[inline(always)]
+fn mix(a: f64, b: f64, share: f64) -> f64 {
+    a + share * (b - a)
+}
+
 impl Places {
     /// 1, or 3 where each colour comes from another place.
     pub(super) fn channels(&self) -> usize {
@@ -114,12 +132,10 @@ impl Places {
 
     /// Where a colour of the pixels of a row, from column `x` on, comes from.
     pub(super) fn row(&self, channel: usize, x: usize, y: usize, places: &mut [[f64; 2]]) {
-        let share = |v: usize| ((v % STEP) as f64 + 0.5) / STEP as f64;
         let below = share(y);
         let row = (y / STEP - self.first.1) * self.columns;
         let nodes = |row: usize| &self.nodes[channel][row..][..self.columns];
         let (above, under) = (nodes(row), nodes(row + self.columns));
-        let mix = |a: f64, b: f64, share: f64| a + share * (b - a);
         let at = |i: usize| [mix(above[i][0], under[i][0], below), mix(above[i][1], under[i][1], below)];
         let (mut x, mut places) = (x, places);
         while !places.is_empty() {
@@ -133,5 +149,42 @@ impl Places {
             x += run.len();
             places = rest;
         }
+    }
+    /// Where a colour of the pixels of a column, from row `y` on, comes from: what [`Self::row`] says of them.
+    pub(super) fn column(&self, channel: usize, x: usize, y: usize, places: &mut [[f64; 2]]) {
+        let along = share(x);
+        let column = x / STEP - self.first.0;
+        let (mut y, mut places) = (y, places);
+        while !places.is_empty() {
+            let at = (y / STEP - self.first.1) * self.columns + column;
+            let [[a, b], [c, d]] =
+                [at, at + self.columns].map(|at| [self.nodes[channel][at], self.nodes[channel][at + 1]]);
+            let (run, rest) = places.split_at_mut((STEP - y % STEP).min(places.len()));
+            for (y, place) in (y..).zip(run.iter_mut()) {
+                let below = share(y);
+                *place = [0, 1].map(|i| mix(mix(a[i], c[i], below), mix(b[i], d[i], below), along));
+            }
+            y += run.len();
+            places = rest;
+        }
+    }
+
+    /// The mean, over all nodes, of what is said of the way from one node to the next along lines of the picture.
+    pub(super) fn mean_over_steps(&self, axis: Axis, of: impl Fn([f64; 2]) -> f64) -> f64 {
+        let ahead = match axis {
+            Axis::Rows => 1,
+            Axis::Columns => self.columns,
+        };
+        let (mut sum, mut count) = (0.0, 0.0);
+        for nodes in &self.nodes {
+            for (i, node) in nodes.iter().enumerate() {
+                let is_last = axis == Axis::Rows && (i + 1) % self.columns == 0;
+                if let Some(next) = nodes.get(i + ahead).filter(|_| !is_last) {
+                    sum += of([next[0] - node[0], next[1] - node[1]]);
+                    count += 1.0;
+                }
+            }
+        }
+        sum / count
     }
 }

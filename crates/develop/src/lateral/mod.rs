@@ -9,6 +9,7 @@ mod align;
 mod blocks;
 mod radial;
 mod shift;
+mod taps;
 
 use darkroot_photo::{Capture, Filter, Layout, Rect};
 use rayon::prelude::*;
