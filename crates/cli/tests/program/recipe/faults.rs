@@ -9,7 +9,7 @@ fn what_is_wrong_in_a_file_is_named_with_its_line_before_anything_is_written() {
     let wrong = [
         ("\n\nspcae = \"srgb\"", [":3:", "`spcae`", "did you mean `space`"]),
         ("clarity = 1", [":1:", "`clarity`", "white-balance"]),
-        ("look = \"film\"", [":1:", "`film`", "neutral, vivid, flat, camera, reproduction or linear"]),
+        ("look = \"film\"", [":1:", "`film`", "neutral, vivid, flat, camera, dcp, reproduction or linear"]),
         ("exposure = \"bright\"", [":1:", "`bright`", "-20 to 20"]),
         ("quality = 101", [":1:", "`101`", "1..=100"]),
         ("bits = 12", [":1:", "`12`", "8, 16 or 32"]),
