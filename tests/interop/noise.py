@@ -16,12 +16,16 @@ import tempfile
 import warnings
 from pathlib import Path
 
-import numpy as np
-import tifffile
+try:
+    import numpy as np
+    import tifffile
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")
-    import colour
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import colour
+except ImportError as missing:
+    print(f"skipped: {missing.name} is not installed")
+    sys.exit(0)
 
 PATCH, GAP, EDGE = 200, 30, 60
 FULL_WELL, READ_NOISE = 20_000.0, 60.0
