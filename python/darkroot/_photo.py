@@ -81,7 +81,7 @@ class Photo(_core.Photo):
         (16, 32, 3)
         >>> photo.develop(look="film")
         Traceback (most recent call last):
-        darkroot.SettingsError: `look`: `film` is no look: use neutral, vivid, flat, camera, reproduction or linear
+        darkroot.SettingsError: `look`: `film` is no look: use neutral, vivid, flat, camera, dcp, reproduction or linear
         """
         return super().develop(
             dtype=dtype,
