@@ -67,15 +67,19 @@ def texture(path):
     return pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
 
 
+def bayer(light):
+    """What an RGGB array lets through of camera RGB."""
+    out = np.empty(light.shape[:2])
+    for y, x, c in [(0, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 2)]:
+        out[y::2, x::2] = light[y::2, x::2, c]
+    return out
+
+
 def mosaic(scene):
     """Light under an RGGB array, 1 = the largest channel of white; and camera RGB of white."""
     matrix = CAMERA @ SRGB
     neutral = matrix @ np.ones(3)
-    light = np.maximum(scene @ (matrix / neutral.max()).T, 0)
-    out = np.empty(scene.shape[:2])
-    for y, x, c in [(0, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 2)]:
-        out[y::2, x::2] = light[y::2, x::2, c]
-    return out, neutral / neutral.max()
+    return bayer(np.maximum(scene @ (matrix / neutral.max()).T, 0)), neutral / neutral.max()
 
 
 def exposed(light, electrons, read, seed):
@@ -87,7 +91,7 @@ def exposed(light, electrons, read, seed):
     return np.clip(np.round(BLACK + share * (WHITE - BLACK)), 0, WHITE).astype(np.uint16)
 
 
-def write_dng(path, counts, neutral):
+def write_dng(path, counts, neutral, camera=CAMERA):
     rational = lambda numbers: [n for v in numbers for n in (int(round(v * 10000)), 10000)]
     tags = [
         (271, "s", 0, "Darkroot", True),
@@ -98,7 +102,7 @@ def write_dng(path, counts, neutral):
         (50708, "s", 0, "Darkroot Compared", True),
         (50714, "H", 1, BLACK, True),
         (50717, "H", 1, WHITE, True),
-        (50721, "2i", 9, rational(CAMERA.ravel()), True),
+        (50721, "2i", 9, rational(camera.ravel()), True),
         (50778, "H", 1, 21, True),
     ]
     if neutral is not None:

@@ -17,10 +17,9 @@ once cutting highlights and once blending them.
 - scenes, with --scenes: a sunset, a lamp in a dark room, snow in the sun and blue diodes, for the eye: PNG files in --work.
 - FILES of --raw: mean L* less that of the embedded preview; --clipped: a* and b* of what is brighter than L* 90.
 
-Needs numpy, scipy, tifffile and Pillow; rawpy for LibRaw, exiftool for previews.
+Needs numpy, scipy, tifffile and Pillow; rawpy for LibRaw.
 """
 import argparse
-import io
 import shutil
 import subprocess
 import sys
@@ -33,7 +32,8 @@ from PIL import Image
 from scipy.special import erf
 
 sys.path.insert(0, str(Path(__file__).parent))
-from denoise import BLACK, CAMERA, SRGB, WHITE, de2000, decode, exposed, lab, mosaic, smooth_scene, write_dng  # noqa: E402
+from brightness import lightness, reduced  # noqa: E402
+from denoise import CAMERA, SRGB, bayer, de2000, decode, exposed, lab, mosaic, smooth_scene, write_dng  # noqa: E402
 
 STOPS, COLUMNS, STEP = (-2.5, 4.5), 72, 4
 BAND, GAP = 48, 16
@@ -123,13 +123,6 @@ def ramps(work):
     return raw, stops, rows
 
 
-def bayer(light):
-    out = np.empty(light.shape[:2])
-    for y, x, c in [(0, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 2)]:
-        out[y::2, x::2] = light[y::2, x::2, c]
-    return np.minimum(out, 1)
-
-
 def oklab(rgb):
     return np.cbrt(decode(rgb) @ (OKLAB[0] @ SRGB).T) @ OKLAB[1].T
 
@@ -182,17 +175,25 @@ def of_edge(picture, slope):
     near = np.abs(distance) < 32
     bins = np.floor(distance[near] * 4).astype(int) + 128
     profile = np.bincount(bins, light[near], 256) / np.maximum(np.bincount(bins, minlength=256), 1)
-    spread = np.gradient(profile) * np.hamming(256)
-    mtf = np.abs(np.fft.rfft(spread))
+    return mtf50(profile), overshoot(profile)
+
+
+def mtf50(profile):
+    """Cycles a pixel at which half of the contrast of an edge is left; its profile is in quarters of a pixel, 256 of them."""
+    mtf = np.abs(np.fft.rfft(np.gradient(profile) * np.hamming(256)))
     cycles = np.arange(len(mtf)) * 4 / 256
     # Of bins of a quarter of a pixel, and of the difference of neighbours.
     mtf[1:] /= np.sinc(cycles[1:] / 4) * np.sinc(cycles[1:] / 2)
     mtf /= mtf[0]
     last = np.argmax(mtf < 0.5)
     share = (mtf[last - 1] - 0.5) / (mtf[last - 1] - mtf[last])
+    return cycles[last - 1] + share * (cycles[1] - cycles[0])
+
+
+def overshoot(profile, seen=slice(None)):
+    """How far such a profile goes beyond its ends where it is seen, as a share of the edge."""
     low, high = profile[20:60].mean(), profile[-60:-20].mean()
-    over = max(profile.max() - high, low - profile.min()) / (high - low)
-    return cycles[last - 1] + share * (cycles[1] - cycles[0]), over
+    return max(profile[seen].max() - high, low - profile[seen].min()) / (high - low)
 
 
 def noise(develop, work):
@@ -235,18 +236,6 @@ def scenes():
     yield "diodes", room + diodes * colours
 
 
-def preview_of(raw):
-    for tag in ("-JpgFromRaw", "-PreviewImage", "-OtherImage", "-ThumbnailImage"):
-        out = subprocess.run(["exiftool", "-b", tag, str(raw)], capture_output=True).stdout
-        if len(out) > 20000:
-            return Image.open(io.BytesIO(out)).convert("RGB")
-    return None
-
-
-def small(picture):
-    return np.asarray(picture.resize((160, 120), Image.Resampling.BOX)) / 255
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--darkroot", required=True)
@@ -277,13 +266,18 @@ def row(arguments, name, develop, work):
             picture = Image.fromarray((255 * np.clip(develop(raw, work), 0, 1)).astype(np.uint8))
             picture.save(work / f"{scene}.{name.replace(', ', '-')}.png")
     for raw in arguments.raw:
-        preview = preview_of(raw)
-        if preview is None:
+        preview = work / "preview.jpg"
+        preview.unlink(missing_ok=True)
+        subprocess.run([arguments.darkroot, "inspect", str(raw), "--preview", str(preview)], capture_output=True)
+        if not preview.exists():
             continue
         try:
             picture = Image.fromarray((255 * np.clip(develop(raw, work), 0, 1)).astype(np.uint8))
-            picture.save(work / f"{raw.stem}.{name.replace(', ', '-')}.png")
-            print(f"    {raw.name}: L* {(lab(small(picture)) - lab(small(preview)))[..., 0].mean():+.1f}", flush=True)
+            out = work / f"{raw.stem}.{name.replace(', ', '-')}.png"
+            picture.save(out)
+            theirs = reduced(preview)
+            off = lightness(reduced(out, theirs.size)).mean() - lightness(theirs).mean()
+            print(f"    {raw.name}: L* {off:+.1f}", flush=True)
         except (RuntimeError, OSError) as e:
             print(f"    {raw.name}: {' '.join(str(e).split())}")
     if arguments.clipped:

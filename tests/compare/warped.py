@@ -22,8 +22,8 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from peers import bayer, read, run, whole_white
-from denoise import SRGB, decode, exposed, write_dng
+from peers import mtf50, overshoot, read, run, whole_white
+from denoise import SRGB, bayer, decode, exposed, write_dng
 from scipy.special import erf
 
 MAKE, CAMERA, LENS, FOCAL = "Canon", "Canon EOS 5D Mark II", "Canon EF 24-70mm f/2.8L USM", 24
@@ -110,16 +110,7 @@ def of_edge(light, name, scale):
     bins = np.floor(distance[near] * 4).astype(int) + 128
     band = light[round((height - 1) / 2) + rows]
     profile = np.bincount(bins, band[near], 256) / np.maximum(np.bincount(bins, minlength=256), 1)
-    mtf = np.abs(np.fft.rfft(np.gradient(profile) * np.hamming(256)))
-    cycles = np.arange(len(mtf)) * 4 / 256
-    # Of bins of a quarter of a pixel, and of the difference of neighbours.
-    mtf[1:] /= np.sinc(cycles[1:] / 4) * np.sinc(cycles[1:] / 2)
-    mtf /= mtf[0]
-    last = np.argmax(mtf < 0.5)
-    share = (mtf[last - 1] - 0.5) / (mtf[last - 1] - mtf[last])
-    low, high = profile[20:60].mean(), profile[-60:-20].mean()
-    over = max(profile[40:-40].max() - high, low - profile[40:-40].min()) / (high - low)
-    return cycles[last - 1] + share * (cycles[1] - cycles[0]), over, off
+    return mtf50(profile), overshoot(profile, slice(40, -40)), off
 
 
 def by_darkroot(program, raw, work, corrects):

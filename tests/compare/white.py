@@ -21,8 +21,7 @@ import numpy as np
 import tifffile
 
 sys.path.insert(0, str(Path(__file__).parent))
-from denoise import SRGB, exposed, lab, encode, write_dng  # noqa: E402
-import denoise  # noqa: E402
+from denoise import SRGB, bayer, decode, encode, exposed, lab, write_dng  # noqa: E402
 
 # The same lights as in tests/colour_correction/auto_white.rs.
 LIGHTS = [2, 4, 6, 10, 11, 19, 24, 26, 29, 32, 43, 55, 59, 67, 72, 78, 87, 88, 91]
@@ -41,10 +40,12 @@ HistogramMatching=false
 """
 
 
-def read(path):
-    rows = list(csv.reader(open(path)))
-    waves = np.array([float(v) for v in rows[0][1:]])
-    return np.array([np.interp(WAVES, waves, [float(v) for v in row[1:]]) for row in rows[1:]])
+def read(path, name=None):
+    """The spectra of a table, or the one of that name."""
+    head, *rows = csv.reader(path.read_text().splitlines())
+    waves = np.array([float(v) for v in head[1:]])
+    rows = [row for row in rows if name in (None, row[0])]
+    return np.array([np.interp(WAVES, waves, [float(v) for v in row[1:]]) for row in rows])
 
 
 def picture(random, surfaces, sensitivities, light):
@@ -77,7 +78,7 @@ def matrix(sensitivities, daylight, observer, chart):
 
 def left(rgb):
     """Chroma of encoded sRGB, brought to L* 50."""
-    light = np.maximum(denoise.decode(rgb), 1e-6)
+    light = np.maximum(decode(rgb), 1e-6)
     colour = lab(encode(light * 0.184 / (light @ SRGB[1])))
     return np.hypot(colour[1], colour[2])
 
@@ -107,24 +108,20 @@ def main():
     surfaces = np.clip(read(arguments.spectra / "sfu1995_380-780_4.csv"), 0, 1)
     lights = read(arguments.spectra / "illum_sfu_measured.csv")[LIGHTS]
     observer = read(arguments.spectra / "cie1931_cmf_380-780_5.csv")
-    illuminants = {row[0]: i for i, row in enumerate(list(csv.reader(open(arguments.spectra / "cie_illuminants_380-780_5.csv")))[1:])}
-    daylight = read(arguments.spectra / "cie_illuminants_380-780_5.csv")[illuminants["D65"]]
+    daylight = read(arguments.spectra / "cie_illuminants_380-780_5.csv", "D65")[0]
     chart = read(arguments.spectra / "colorchecker_classic24_babelcolor_380-730_10.csv")
     errors = {way: [] for way in ways}
     with tempfile.TemporaryDirectory() as temporary:
         raw, out = Path(temporary) / "white.dng", Path(temporary) / "white.tif"
         for name in CAMERAS:
             sensitivities = read(arguments.spectra / f"{name}.csv")
+            camera = matrix(sensitivities, daylight, observer, chart)
             for number, light in zip(LIGHTS, lights):
                 xyz = observer @ light
                 for scene in range(arguments.scenes):
                     blocks = picture(np.random.default_rng([number, scene]), surfaces, sensitivities, light)
                     whole = np.repeat(np.repeat(blocks, PATCH, 0), PATCH, 1)
-                    mosaic = np.empty(whole.shape[:2])
-                    for y, x, c in [(0, 0, 0), (0, 1, 1), (1, 0, 1), (1, 1, 2)]:
-                        mosaic[y::2, x::2] = whole[y::2, x::2, c]
-                    denoise.CAMERA = matrix(sensitivities, daylight, observer, chart)
-                    write_dng(raw, exposed(mosaic, 40000, 4, scene), None)
+                    write_dng(raw, exposed(bayer(whole), 40000, 4, scene), None, camera)
                     for way, develop in ways.items():
                         out.unlink(missing_ok=True)
                         develop(raw, out)

@@ -27,6 +27,11 @@ pub(crate) fn from_rgb(space: &RgbSpace) -> Matrix3 {
     Matrix3::from_fn(|r, c| matrix[(r, c)] / whites[r])
 }
 
+/// Linear Rec. 2020, in which the scene is, to linear RGB of a space, white to white.
+pub(crate) fn from_scene(space: &RgbSpace) -> Matrix3 {
+    space.from_xyz_under(white::D50) * RgbSpace::REC2020.to_xyz_under(white::D50)
+}
+
 pub(crate) fn rows(m: &Matrix3) -> Rows {
     [0, 1, 2].map(|r| [0, 1, 2].map(|c| m[(r, c)] as f32))
 }

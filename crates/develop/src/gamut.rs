@@ -4,10 +4,10 @@
 //! of its hue in Oklab (`cones.rs`) at its lightness.
 
 use darkroot_colour::simd::vectorised;
-use darkroot_colour::{Matrix3, RgbSpace, white};
+use darkroot_colour::{Matrix3, RgbSpace};
 use darkroot_photo::{Display, Rgb, Scene, Toned};
 
-use crate::cones::{self, Rows, along_hue, from_rgb, greater, lesser, rows, times};
+use crate::cones::{self, Rows, along_hue, from_rgb, from_scene, greater, lesser, rows, times};
 use crate::recipe::Gamut;
 
 /// What becomes of colours that the output cannot show.
@@ -52,11 +52,10 @@ const ROUNDING: f32 = 1e-6;
 impl Primaries {
     /// Prepares the conversion to `space`.
     pub fn new(space: &RgbSpace) -> Self {
-        let from_scene = space.from_xyz_under(white::D50) * RgbSpace::REC2020.to_xyz_under(white::D50);
         // Primaries of real spaces are three different colours, so the inverse exists.
         let from_cones = from_rgb(space).try_inverse().unwrap_or_else(Matrix3::identity);
         Self {
-            from_scene: rows(&from_scene),
+            from_scene: rows(&from_scene(space)),
             from_cones: rows(&from_cones),
             scene_to_cones: rows(&from_rgb(&RgbSpace::REC2020)),
         }
@@ -153,7 +152,7 @@ pub fn convert(mut picture: Rgb<Scene>, primaries: &Primaries) -> Rgb<Display> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use darkroot_colour::{Oklab, Vector3, Xyz};
+    use darkroot_colour::{Oklab, Vector3, Xyz, white};
     use darkroot_photo::Size;
 
     const SPACES: [RgbSpace; 3] = [RgbSpace::SRGB, RgbSpace::DISPLAY_P3, RgbSpace::ADOBE_RGB];

@@ -279,7 +279,7 @@ fn most(v: [f32; 3]) -> f32 {
 }
 
 #[inline(always)]
-fn least(v: [f32; 3]) -> f32 {
+pub(crate) fn least(v: [f32; 3]) -> f32 {
     v[0].min(v[1]).min(v[2])
 }
 

@@ -5,10 +5,10 @@
 
 use std::sync::Arc;
 
-use darkroot_colour::{RgbSpace, white};
+use darkroot_colour::RgbSpace;
 use darkroot_photo::{Capture, LocalToneMap, Rgb, Scene};
 
-use crate::cones::{Rows, rows, times};
+use crate::cones::{Rows, from_scene, rows, times};
 use crate::recipe::LocalTone;
 
 /// A map made ready for loops.
@@ -36,10 +36,9 @@ impl LocalGains {
     }
 
     /// Of a capture whose maker brightens pictures by so many stops.
-    fn of(map: &LocalToneMap, baseline_exposure: f64) -> Self {
-        let to_rimm =
-            RgbSpace::PROPHOTO.from_xyz_under(white::D50) * RgbSpace::REC2020.to_xyz_under(white::D50);
-        Self { map: Arc::new(map.clone()), from_scene: rows(&(to_rimm * baseline_exposure.exp2())) }
+    fn of(map: &Arc<LocalToneMap>, baseline_exposure: f64) -> Self {
+        let to_rimm = from_scene(&RgbSpace::PROPHOTO) * baseline_exposure.exp2();
+        Self { map: Arc::clone(map), from_scene: rows(&to_rimm) }
     }
 
     /// The gain for scene light at a place, given as shares of the width and the height of the active area.
@@ -89,8 +88,8 @@ mod tests {
     use darkroot_photo::Size;
 
     /// Two tables side by side, in the middles of the halves of the picture, of four entries.
-    fn map() -> LocalToneMap {
-        LocalToneMap {
+    fn map() -> Arc<LocalToneMap> {
+        Arc::new(LocalToneMap {
             points: [1, 2],
             spacing: [1.0, 0.5],
             origin: [0.5, 0.25],
@@ -98,7 +97,7 @@ mod tests {
             weights: [0.0, 0.0, 0.0, 0.0, 1.0],
             gamma: 1.0,
             gains: vec![4.0, 2.0, 1.0, 0.5, 1.0, 1.0, 1.0, 1.0],
-        }
+        })
     }
 
     fn grey(local: &LocalGains, light: f32, place: [f32; 2]) -> f32 {
@@ -128,7 +127,7 @@ mod tests {
     fn the_makers_exposure_counts_and_the_exponent() {
         // A stop of the maker's: 0.125 counts as 0.25.
         assert!((grey(&LocalGains::of(&map(), 1.0), 0.125, [0.25, 0.5]) - 2.0).abs() < 1e-3);
-        let root = LocalGains::of(&LocalToneMap { gamma: 0.5, ..map() }, 0.0);
+        let root = LocalGains::of(&Arc::new(LocalToneMap { gamma: 0.5, ..(*map()).clone() }), 0.0);
         assert!((grey(&root, 0.0625, [0.25, 0.5]) - 2.0).abs() < 1e-3);
     }
 

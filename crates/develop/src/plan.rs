@@ -14,7 +14,7 @@ use crate::demosaic::Method;
 use crate::error::Error;
 use crate::gamut::{Mapping, Primaries};
 use crate::geometry::lay;
-use crate::highlights::{Rebuild, Treatment};
+use crate::highlights::{Rebuild, Treatment, least};
 use crate::local_tone::LocalGains;
 use crate::lut;
 use crate::recipe::{Bits, Crop, Exposure, Highlights, Look, OutputSpace, Recipe};
@@ -274,7 +274,7 @@ fn treatment(analysis: &Analysis, wanted: Highlights, multipliers: [f32; 3], une
     let survey = analysis.survey();
     let limits = [0, 1, 2].map(|c| multipliers[c] * survey.saturation[c]);
     if wanted == Highlights::Clip {
-        return Treatment::Clip { limit: limits.iter().fold(f32::MAX, |a, &b| a.min(b)) };
+        return Treatment::Clip { limit: least(limits) };
     }
     Treatment::Rebuild(Rebuild { limits, colours: analysis.clipped_colours(multipliers), uneven })
 }

@@ -1,5 +1,7 @@
 //! A decoded raw file: everything known about one exposure.
 
+use std::sync::Arc;
+
 use darkroot_colour::{Matrix3, Xy};
 
 use crate::{BlackLevel, Correction, Counts, LocalToneMap, Metadata, Orientation, Rect, WhiteLevel};
@@ -108,7 +110,7 @@ pub struct Capture {
     /// Corrections on demosaiced camera RGB (DNG OpcodeList3).
     pub picture_corrections: Vec<Correction>,
     /// What the maker's rendering does to each part of the picture; `None` where the file does not say.
-    pub local_tone: Option<LocalToneMap>,
+    pub local_tone: Option<Arc<LocalToneMap>>,
     /// What the camera wrote about the shot.
     pub metadata: Metadata,
     /// How the file was stored.

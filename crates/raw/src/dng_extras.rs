@@ -13,19 +13,20 @@ const SEMANTIC_NAME: u16 = 0xcd2e;
 /// Longest name of a mask that is shown.
 const MAX_NAME: usize = 64;
 
-/// Tags of a rendering that belongs to the maker's look, with what they are.
-const LOOK_TAGS: [(u16, &str); 1] = [(0xcd3f, "colour tables (RGBTables)")];
+/// DNG RGBTables: a rendering that belongs to the maker's look.
+const RGB_TABLES: u16 = 0xcd3f;
 
 /// Notes on all of them.
 pub(crate) fn notes(tiff: &Directories<'_>) -> Vec<String> {
     if !tiff.has(DNG_VERSION) {
         return Vec::new();
     }
-    let mut notes: Vec<String> = LOOK_TAGS
-        .iter()
-        .filter(|(number, _)| tiff.has(*number))
-        .map(|(_, what)| format!("the file's {what} belong to the maker's look and are not applied"))
-        .collect();
+    let mut notes = Vec::new();
+    if tiff.has(RGB_TABLES) {
+        notes.push(
+            "the file's colour tables (RGBTables) belong to the maker's look and are not applied".to_owned(),
+        );
+    }
     let mut others: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for directory in &tiff.all {
         let Some(what) = directory.number(tiff, tag::NEW_SUBFILE_TYPE).and_then(kind) else { continue };
@@ -85,7 +86,7 @@ mod tests {
         let directory = |entries: &[Vec<u8>], next: u32| {
             [&(entries.len() as u16).to_le_bytes()[..], &entries.concat(), &next.to_le_bytes()].concat()
         };
-        let first = [entry(DNG_VERSION, 1, 4, [1, 7, 1, 0]), entry(0xcd3f, 7, 4, [0; 4])];
+        let first = [entry(DNG_VERSION, 1, 4, [1, 7, 1, 0]), entry(RGB_TABLES, 7, 4, [0; 4])];
         let second =
             [entry(tag::NEW_SUBFILE_TYPE, 4, 1, subfile.to_le_bytes()), entry(SEMANTIC_NAME, 2, 4, *name)];
         let first_length = 2 + 12 * first.len() as u32 + 4;

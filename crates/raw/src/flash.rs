@@ -1,5 +1,7 @@
 //! The default decoder: flashraw.
 
+use std::sync::Arc;
+
 use darkroot_photo::{Capture, Cfa, Counts, Filter, Layout, Mosaic, Orientation, Size, Source};
 use flashraw::{
     CorruptionPolicy, DecodeOptions, FlashRaw, FrameInfo, OutputFormat, RawFrame, RawMetadata, RawPixelData,
@@ -8,7 +10,8 @@ use flashraw::{
 
 use crate::dng_mends::Fields;
 use crate::flash_facts::{
-    as_shot, black_level, calibrations, camera, compression_name, layout, pixel_aspect, rect, white_level,
+    as_shot, black_level, calibrations, camera, compression_name, layout, noise_profile, pixel_aspect, rect,
+    white_level,
 };
 use crate::screen::{Container, DNG_VERSION, WHITE_LEVEL};
 use crate::{
@@ -299,7 +302,8 @@ fn describe(
         mosaic_corrections = opcodes::parse(&opcodes.lists[1], "OpcodeList2", &mut notes);
         picture_corrections = opcodes::parse(&opcodes.lists[2], "OpcodeList3", &mut notes);
     }
-    let local_tone = tiff.filter(|_| is_dng).and_then(|tiff| local_tone::read(tiff, &mut notes));
+    let local_tone =
+        tiff.filter(|_| is_dng).and_then(|tiff| local_tone::read(tiff, &mut notes)).map(Arc::new);
     let mut metadata = exif::read(bytes, container, meta);
     exif::complete(&mut metadata, meta);
     Ok(Capture {
@@ -336,12 +340,6 @@ fn describe(
         },
         notes,
     })
-}
-
-/// Pairs of DNG NoiseProfile, as many as are whole.
-fn noise_profile(meta: &RawMetadata) -> Vec<[f64; 2]> {
-    let numbers = meta.dng.as_ref().and_then(|d| d.noise_profile.as_deref()).unwrap_or_default();
-    numbers.as_chunks().0.to_vec()
 }
 
 /// What flashraw says of OpcodeList1, which it applies itself: only what it left out.

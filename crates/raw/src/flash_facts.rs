@@ -137,6 +137,12 @@ pub(crate) fn calibrations(matrices: &ColorMatrices) -> (Vec<Calibration>, [f64;
     (calibrations, analog)
 }
 
+/// Pairs of DNG NoiseProfile, as many as are whole.
+pub(crate) fn noise_profile(meta: &RawMetadata) -> Vec<[f64; 2]> {
+    let numbers = meta.dng.as_ref().and_then(|d| d.noise_profile.as_deref()).unwrap_or_default();
+    numbers.as_chunks().0.to_vec()
+}
+
 pub(crate) fn matrix(m: &ColorMatrix) -> Option<Matrix3> {
     (m.rows == 3 && m.values.len() == 9 && m.values.iter().all(|v| v.is_finite()))
         .then(|| Matrix3::from_row_iterator(m.values.iter().map(|&v| f64::from(v))))

@@ -1,5 +1,7 @@
 //! A local tone map lies in the picture where it lies in the frame, however that is turned, cut or made smaller.
 
+use std::sync::Arc;
+
 use darkroot_colour::RgbSpace;
 use darkroot_develop::{Bits, Cancel, Crop, Geometry, LocalTone, Look, Recipe, Scale, Turn, View};
 use darkroot_photo::{Capture, Layout, LocalToneMap, Rect, Size};
@@ -19,7 +21,7 @@ fn capture(layout: Layout) -> Capture {
         gamma: 1.0,
         gains: vec![0.5, 0.5, 1.0, 1.0],
     };
-    Capture { local_tone: Some(local_tone), ..flat_grey(layout, SIZE, 0.1) }
+    Capture { local_tone: Some(Arc::new(local_tone)), ..flat_grey(layout, SIZE, 0.1) }
 }
 
 fn recipe() -> Recipe {

@@ -158,44 +158,47 @@ fn mean_of_few(
     out: &mut [f32],
 ) {
     const PAIR: usize = 2 * LANES;
-    let (mut sum, mut low, mut high) = ([0f32; LANES], [f32::MAX; LANES], [f32::MIN; LANES]);
+    let mut totals = Totals::NOTHING;
     for (pair, weights) in columns.as_chunks::<2>().0.iter().enumerate() {
-        let (mut mean, mut least, mut most) = ([0f32; PAIR], [f32::MAX; PAIR], [f32::MIN; PAIR]);
-        for (j, of_row) in rows.iter().enumerate() {
-            let row = &pixels[j * width + pair * PAIR..][..PAIR];
-            for (((mean, least), most), v) in mean.iter_mut().zip(&mut least).zip(&mut most).zip(row) {
-                *mean += of_row * v;
-                *least = if v < least { *v } else { *least };
-                *most = if v > most { *v } else { *most };
-            }
-        }
-        for (k, weight) in weights.iter().enumerate() {
-            for i in 0..LANES {
-                let at = LANES * k + i;
-                sum[i] += weight * mean[at];
-                low[i] = if least[at] < low[i] { least[at] } else { low[i] };
-                high[i] = if most[at] > high[i] { most[at] } else { high[i] };
-            }
-        }
+        totals.add::<PAIR>(&pixels[pair * PAIR..], width, (weights, rows));
     }
-    all_within((sum, low, high), out);
+    totals.within(out);
 }
 
 /// The weighted mean of the pixels from the first one on, within their range: down the columns of a group, then across.
 #[inline(always)]
 fn mean(pixels: &[f32], width: usize, (columns, rows): (&[f32], &[f32]), out: &mut [f32]) {
-    let (mut sum, mut low, mut high) = ([0f32; LANES], [f32::MAX; LANES], [f32::MIN; LANES]);
+    let mut totals = Totals::NOTHING;
     for (group, weights) in columns.chunks_exact(GROUP).enumerate() {
-        let (mut mean, mut least, mut most) = ([0f32; NUMBERS], [f32::MAX; NUMBERS], [f32::MIN; NUMBERS]);
+        totals.add::<NUMBERS>(&pixels[group * NUMBERS..], width, (weights, rows));
+    }
+    totals.within(out);
+}
+
+/// Weighted sums of pixels, and the range of those.
+struct Totals {
+    sum: [f32; LANES],
+    low: [f32; LANES],
+    high: [f32; LANES],
+}
+
+impl Totals {
+    const NOTHING: Self = Self { sum: [0.0; LANES], low: [f32::MAX; LANES], high: [f32::MIN; LANES] };
+
+    /// Adds columns of `N` numbers in all, from the first pixel on: down each, then across.
+    #[inline(always)]
+    fn add<const N: usize>(&mut self, pixels: &[f32], width: usize, (columns, rows): (&[f32], &[f32])) {
+        let (mut mean, mut least, mut most) = ([0f32; N], [f32::MAX; N], [f32::MIN; N]);
         for (j, of_row) in rows.iter().enumerate() {
-            let row = &pixels[j * width + group * NUMBERS..][..NUMBERS];
+            let row = &pixels[j * width..][..N];
             for (((mean, least), most), v) in mean.iter_mut().zip(&mut least).zip(&mut most).zip(row) {
                 *mean += of_row * v;
                 *least = if v < least { *v } else { *least };
                 *most = if v > most { *v } else { *most };
             }
         }
-        for (k, weight) in weights.iter().enumerate() {
+        let Self { sum, low, high } = self;
+        for (k, weight) in columns.iter().enumerate() {
             for i in 0..LANES {
                 let at = LANES * k + i;
                 sum[i] += weight * mean[at];
@@ -204,14 +207,13 @@ fn mean(pixels: &[f32], width: usize, (columns, rows): (&[f32], &[f32]), out: &m
             }
         }
     }
-    all_within((sum, low, high), out);
-}
 
-/// Sums, held within ranges.
-#[inline(always)]
-fn all_within((sum, low, high): ([f32; LANES], [f32; LANES], [f32; LANES]), out: &mut [f32]) {
-    for (i, out) in out.iter_mut().enumerate().take(LANES) {
-        *out = within(sum[i], low[i], high[i]);
+    /// The sums, held within their ranges.
+    #[inline(always)]
+    fn within(&self, out: &mut [f32]) {
+        for (i, out) in out.iter_mut().enumerate().take(LANES) {
+            *out = within(self.sum[i], self.low[i], self.high[i]);
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use crate::analysis::Analysis;
 use crate::demosaic::Method;
 use crate::denoise::{Asked, Denoiser, Strength};
 use crate::geometry::{Geometry, Laid, Lens};
-use crate::highlights::{CLIPPED, Rebuild, Treatment};
+use crate::highlights::{CLIPPED, Rebuild, Treatment, least};
 use crate::lateral::Lateral;
 use crate::mend::{Mends, Wanted};
 use crate::noise::Noise;
@@ -85,9 +85,7 @@ pub(super) fn sharpener(
     }
     let blur = analysis.blur().unwrap_or(USUAL_BLUR).min(*BLURS.end());
     let white = match highlights {
-        Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) => {
-            limits.iter().fold(f32::MAX, |a, &b| a.min(b))
-        }
+        Treatment::Rebuild(Rebuild { limits, uneven: false, .. }) => least(*limits),
         _ => f32::MAX,
     };
     (blur >= *BLURS.start()).then(|| Sharpener::of(blur, amount, analysis.noise_model(), multipliers, white))

@@ -5,13 +5,13 @@
 use std::sync::Arc;
 
 use darkroot_colour::simd::vectorised;
-use darkroot_colour::{RgbSpace, TransferCurve, white};
+use darkroot_colour::{RgbSpace, TransferCurve};
 use darkroot_photo::{Rgb, Scene, Toned};
 use darkroot_profile::{LookTable, Rendering};
 
 use super::adjust::{Table, Tones};
 use super::{Base, METERED_GREY};
-use crate::cones::{self, Rows, along_hue, from_rgb, greater, lesser, rows, times};
+use crate::cones::{self, Rows, along_hue, from_rgb, from_scene, greater, lesser, rows, times};
 use crate::lut::Overlay;
 use crate::transfer::Octaves;
 
@@ -61,14 +61,12 @@ impl ProfileLook {
             encode: Arc::new(Octaves::of(|v| srgb.encode(v))),
             decode: Arc::new(Octaves::of(|v| srgb.decode(v))),
         };
-        let from_scene =
-            RgbSpace::PROPHOTO.from_xyz_under(white::D50) * RgbSpace::REC2020.to_xyz_under(white::D50);
         Self {
             table: rendering.table.as_ref().map(coded),
             curve,
             chroma: tones.saturation,
             vibrance: tones.vibrance,
-            from_scene: rows(&from_scene),
+            from_scene: rows(&from_scene(&RgbSpace::PROPHOTO)),
             to_cones: rows(&from_rgb(&RgbSpace::PROPHOTO)),
         }
     }
@@ -119,7 +117,7 @@ pub fn show(mut picture: Rgb<Scene>, look: &ProfileLook) -> Rgb<Toned> {
 mod tests {
     use super::*;
     use crate::gamut::{self, Primaries};
-    use darkroot_colour::Vector3;
+    use darkroot_colour::{Vector3, white};
     use darkroot_photo::Size;
     use darkroot_profile::ToneCurve;
 
