@@ -14,7 +14,17 @@ static REQUEST: LazyLock<DeliveryRequest> = LazyLock::new(|| {
     let reference = charts::reference(None, &layout).expect("it is built in").colours;
     // By hand, so that pictures that show no chart go all the way.
     let corners = Some([[2.0, 2.0], [60.0, 3.0], [61.0, 44.0], [3.0, 43.0]]);
-    DeliveryRequest { layout, reference, corners, exclude: Vec::new(), flat: None, pitch: None, light: None, accept: true }
+    DeliveryRequest {
+        layout,
+        reference,
+        corners,
+        exclude: Vec::new(),
+        flat: None,
+        pitch: None,
+        pixels_per_degree: darkroot::deliver::PIXELS_PER_DEGREE,
+        light: None,
+        accept: true,
+    }
 });
 
 fuzz_target!(|bytes: &[u8]| {

@@ -18,7 +18,6 @@ mod reduce_any;
 mod reduce_bayer;
 mod rows;
 pub mod xtrans;
-mod xtrans_sites;
 
 /// A demosaicing method for one sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +39,7 @@ impl Method {
             Layout::Rgb | Layout::Monochrome => Some(Self::None),
             Layout::Cfa(cfa) if !cfa.is_rgb() => None,
             Layout::Cfa(cfa) if cfa.is_bayer() && wanted == Demosaic::Best => Some(Self::Lmmse),
-            Layout::Cfa(cfa) if xtrans_sites::phase(cfa).is_some() && wanted == Demosaic::Best => {
+            Layout::Cfa(cfa) if xtrans::phase(cfa).is_some() && wanted == Demosaic::Best => {
                 Some(Self::XTrans)
             }
             Layout::Cfa(_) => Some(Self::Bilinear),
@@ -76,7 +75,7 @@ pub fn demosaic(mosaic: &Mosaic<f32>, method: Method, border: usize, picture: &m
     picture.resize(inner);
     match (method, &mosaic.layout) {
         (Method::Lmmse, Layout::Cfa(cfa)) => lmmse::demosaic(mosaic, cfa, border, picture),
-        (Method::XTrans, Layout::Cfa(cfa)) => match xtrans_sites::phase(cfa) {
+        (Method::XTrans, Layout::Cfa(cfa)) => match xtrans::phase(cfa) {
             Some(phase) => xtrans::demosaic(mosaic, phase, border, picture),
             None => bilinear::demosaic(mosaic, cfa, border, picture),
         },

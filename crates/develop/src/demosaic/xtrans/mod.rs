@@ -10,9 +10,19 @@
 
 use darkroot_photo::{CameraSpace, Mosaic, Rgb};
 
-use super::xtrans_sites::{Each, MODELS, PERIOD, REACH, Site, reached, site_at};
-use super::{signed_sqrt, signed_square};
+mod mirror;
+mod parts;
+mod sites;
+#[cfg(test)]
+mod slow;
+
 use darkroot_colour::simd::vectorised;
+
+use super::signed_square;
+use mirror::{Folded, Mirrored, Predictions, site_at};
+use parts::{LANES, Lanes, Parts, lanes, put_together, take_apart};
+pub(super) use sites::phase;
+use sites::{MODELS, PERIOD, REACH, reached};
 
 /// Pixels around the result that the method looks at: 4 for the prediction, 4 for its errors.
 pub const BORDER: usize = REACH + HALF;
@@ -23,40 +33,6 @@ const HALF: usize = 4;
 const WINDOW: [f32; HALF + 1] = [0.04, 0.08, 0.12, 0.16, 0.2];
 /// Keeps quotients of vanishing errors finite; far below the square of any sample.
 const TINY: f32 = 1e-30;
-
-/// Pixels that are worked on at once: of one column of the array, so [`PERIOD`] columns apart.
-const LANES: usize = 8;
-type Lanes = [f32; LANES];
-
-/// A row of pixels taken apart by columns of the array: part `k` has columns `k`, `k + 6`, `k + 12` and so on,
-/// after one pixel of nothing and before others.
-#[derive(Clone, Copy)]
-struct Parts {
-    /// Pixels of a part that are worked on: a multiple of [`LANES`].
-    pixels: usize,
-}
-
-impl Parts {
-    fn of(width: usize) -> Self {
-        Self { pixels: width.div_ceil(PERIOD).next_multiple_of(LANES) }
-    }
-
-    /// Floats of a part.
-    fn length(self) -> usize {
-        self.pixels + 2
-    }
-
-    /// Floats of a row.
-    fn row(self) -> usize {
-        PERIOD * self.length()
-    }
-
-    /// Where in a row the pixel `dx` columns from pixel 0 of part `k` is, `|dx| < 6`.
-    fn index(self, k: usize, dx: isize) -> usize {
-        let column = (k + PERIOD).wrapping_add_signed(dx);
-        column % PERIOD * self.length() + column / PERIOD
-    }
-}
 
 /// Demosaics the inner part of an X-Trans mosaic whose array begins at `phase`.
 pub fn demosaic(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut Rgb<CameraSpace>) {
@@ -120,7 +96,7 @@ struct Around<'a> {
     samples: &'a [f32],
     taps: &'a [Vec<usize>; PERIOD],
     /// For each part.
-    sites: [&'static Site; PERIOD],
+    sites: [&'static Mirrored; PERIOD],
     parts: Parts,
 }
 
@@ -129,11 +105,13 @@ impl Around<'_> {
     #[inline(always)]
     fn squared_errors(&self, errors: &mut [f32]) {
         let parts = self.parts;
+        let mut folded = Folded::NOTHING;
         for (k, (taps, site)) in self.taps.iter().zip(self.sites).enumerate() {
             for j in (0..parts.pixels).step_by(LANES) {
-                let error = predict(&self.samples[j..], taps, &site.error);
-                for (number, error) in error.iter().enumerate() {
-                    let at = number * parts.row() + parts.index(k, 0) + j;
+                folded.fill(&self.samples[j..], taps, site);
+                let (error, models) = site.error(&folded);
+                for (error, model) in error.iter().zip(models) {
+                    let at = model * parts.row() + parts.index(k, 0) + j;
                     errors[at..at + LANES].copy_from_slice(&error.map(|e| e * e));
                 }
             }
@@ -144,62 +122,21 @@ impl Around<'_> {
     #[inline(always)]
     fn colours(&self, shares: &[f32], colours: &mut [Vec<f32>; 3]) {
         let parts = self.parts;
+        let mut folded = Folded::NOTHING;
         for (k, (taps, site)) in self.taps.iter().zip(self.sites).enumerate() {
             for j in (0..parts.pixels).step_by(LANES) {
                 let at = parts.index(k, 0) + j;
                 let mut put = |c: usize, root: Lanes| {
                     colours[c][at..at + LANES].copy_from_slice(&root.map(signed_square));
                 };
-                for (i, weights) in site.missing.iter().enumerate() {
-                    let predictions = predict(&self.samples[j..], taps, weights);
-                    put((site.own + 1 + i) % 3, join(&predictions, &shares[at..], parts.row()));
+                folded.fill(&self.samples[j..], taps, site);
+                for (i, predictions) in site.missing(&folded).iter().enumerate() {
+                    put((site.own + 1 + i) % 3, join(predictions, &shares[at..], parts.row()));
                 }
-                let own = &self.samples[REACH * parts.row() + at..][..LANES];
-                put(site.own, std::array::from_fn(|l| own[l]));
+                put(site.own, lanes(&self.samples[REACH * parts.row() + at..]));
             }
         }
     }
-}
-
-/// Signed square roots of samples, each row taken apart.
-#[inline(always)]
-fn take_apart(samples: &[f32], width: usize, parts: Parts) -> Vec<f32> {
-    let mut roots = vec![0f32; samples.len() / width * parts.row()];
-    for (row, out) in samples.chunks_exact(width).zip(roots.chunks_exact_mut(parts.row())) {
-        for (k, out) in out.chunks_exact_mut(parts.length()).enumerate() {
-            for (out, v) in out[1..].iter_mut().zip(row[k.min(width)..].iter().step_by(PERIOD)) {
-                *out = signed_sqrt(*v);
-            }
-        }
-    }
-    roots
-}
-
-/// Puts a row together again, from column `first` on.
-#[inline(always)]
-fn put_together(out: &mut [f32], row: &[f32], first: usize, parts: Parts) {
-    for k in 0..PERIOD {
-        let column = first + k;
-        let part = &row[parts.index(column % PERIOD, 0) + column / PERIOD..];
-        for (out, v) in out.iter_mut().skip(k).step_by(PERIOD).zip(part) {
-            *out = *v;
-        }
-    }
-}
-
-/// Weighted sums of samples, for each model.
-#[inline(always)]
-fn predict(samples: &[f32], taps: &[usize], weights: &[Each]) -> [Lanes; MODELS] {
-    let mut sums = [[0f32; LANES]; MODELS];
-    for (tap, weights) in taps.iter().zip(weights) {
-        let samples: Lanes = std::array::from_fn(|l| samples[*tap..*tap + LANES][l]);
-        for number in 0..MODELS {
-            for l in 0..LANES {
-                sums[number][l] += weights[number] * samples[l];
-            }
-        }
-    }
-    sums
 }
 
 /// Smooths a row that is taken apart.
@@ -253,10 +190,10 @@ fn share(errors: &mut [f32], row: usize) {
 
 /// The predictions joined by the models' shares, those of one model `row` after the other.
 #[inline(always)]
-fn join(predictions: &[Lanes; MODELS], shares: &[f32], row: usize) -> Lanes {
+fn join((predictions, models): &Predictions, shares: &[f32], row: usize) -> Lanes {
     let mut sum = [0f32; LANES];
-    for (number, prediction) in predictions.iter().enumerate() {
-        let shares = &shares[number * row..number * row + LANES];
+    for (prediction, model) in predictions.iter().zip(*models) {
+        let shares = lanes(&shares[model * row..]);
         for l in 0..LANES {
             sum[l] += prediction[l] * shares[l];
         }

@@ -1,10 +1,8 @@
 //! The X-Trans array, and the weights with which each of its sites predicts.
 
-use std::sync::LazyLock;
-
 use darkroot_photo::Cfa;
 
-use super::kriging::{COLOURFUL, DIRECTIONS, GREYISH, NOISE, solve};
+use super::super::kriging::{COLOURFUL, DIRECTIONS, GREYISH, NOISE, solve};
 
 /// Samples within this distance, and half a pixel more, predict.
 pub(super) const REACH: usize = 4;
@@ -15,7 +13,7 @@ pub(super) const PERIOD: usize = 6;
 const ARRAY: [&[u8; PERIOD]; PERIOD] = [b"GBGGRG", b"RGRBGB", b"GBGGRG", b"GRGGBG", b"BGBRGR", b"GRGGBG"];
 
 /// The array's colour (0 red, 1 green, 2 blue) in column `x` of row `y`.
-fn colour(x: usize, y: usize) -> usize {
+pub(super) fn colour(x: usize, y: usize) -> usize {
     match ARRAY[y % PERIOD][x % PERIOD] {
         b'R' => 0,
         b'G' => 1,
@@ -24,7 +22,7 @@ fn colour(x: usize, y: usize) -> usize {
 }
 
 /// Column and row of the X-Trans array at which `cfa` begins; `None` for any other array.
-pub(super) fn phase(cfa: &Cfa) -> Option<(usize, usize)> {
+pub(in super::super) fn phase(cfa: &Cfa) -> Option<(usize, usize)> {
     let places = (0..PERIOD * PERIOD).map(|i| (i % PERIOD, i / PERIOD));
     let same =
         |x: usize, y: usize, (u, v): (usize, usize)| cfa.at(x, y).plane() == Some(colour(x + u, y + v));
@@ -54,17 +52,8 @@ pub(super) fn reached() -> Vec<(isize, isize)> {
     square.filter(|(dx, dy)| dx * dx + dy * dy <= reach * reach + reach).collect()
 }
 
-/// The sites of the array. It looks the same three columns and three rows on, so three rows have them all.
-static SITES: LazyLock<Vec<Site>> =
-    LazyLock::new(|| (0..PERIOD * PERIOD / 2).map(|i| site(i % PERIOD, i / PERIOD)).collect());
-
-pub(super) fn site_at(x: usize, y: usize) -> &'static Site {
-    let x = if y % PERIOD < 3 { x } else { x + 3 };
-    &SITES[y % 3 * PERIOD + x % PERIOD]
-}
-
 /// Solves the equations of kriging, every colour's mean being unknown, for column `x` of row `y` of the array.
-fn site(x: usize, y: usize) -> Site {
+pub(super) fn site(x: usize, y: usize) -> Site {
     let places = reached();
     let n = places.len();
     let beside = |(dx, dy): (isize, isize)| {
