@@ -3,7 +3,7 @@
 //! A colour that the output can show is left as it is. Another one loses chroma until the output can show it, along the line
 //! of its hue in Oklab (`cones.rs`) at its lightness.
 
-use darkroot_colour::simd::vectorised;
+use darkroot_colour::simd::vectorised_widely;
 use darkroot_colour::{Matrix3, RgbSpace};
 use darkroot_photo::{Display, Rgb, Scene, Toned};
 
@@ -93,7 +93,7 @@ fn shown(v: f32) -> f32 {
 /// Converts, and moves what the output cannot show towards the grey of the same lightness until it can.
 pub fn fit(mut picture: Rgb<Toned>, primaries: &Primaries) -> Rgb<Display> {
     let [r, g, b] = picture.planes_mut();
-    vectorised(
+    vectorised_widely(
         #[inline(always)]
         || {
             let mut converted = [[0f32; RUN]; 3];

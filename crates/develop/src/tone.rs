@@ -9,7 +9,7 @@
 //! and orange yellow on their way to white.
 
 use darkroot_colour::RgbSpace;
-use darkroot_colour::simd::vectorised;
+use darkroot_colour::simd::vectorised_widely;
 use darkroot_photo::{Rgb, Scene, Toned};
 
 use crate::Look;
@@ -191,7 +191,7 @@ impl Shows for &Table {
 #[inline(always)]
 fn toned<C: Shows, const VIBRANT: bool>(mut picture: Rgb<Scene>, colours: Colours, curve: C) -> Rgb<Toned> {
     let [r, g, b] = picture.planes_mut();
-    vectorised(
+    vectorised_widely(
         #[inline(always)]
         || {
             for ((r, g), b) in r.iter_mut().zip(g.iter_mut()).zip(b.iter_mut()) {

@@ -1,6 +1,6 @@
 //! A model applied to planes of `f32`: the fast path.
 //!
-//! Loops are plain and vectorised by the compiler for AVX2 where the machine has it; additions and multiplications
+//! Loops are plain and vectorised by the compiler for AVX2 or AVX-512 where the machine has it; additions and multiplications
 //! are never fused, so every machine gives the same bits.
 
 mod hue_plane;
@@ -9,7 +9,7 @@ mod residual;
 mod root;
 
 use crate::Model;
-use darkroot_colour::simd::vectorised;
+use darkroot_colour::simd::vectorised_widely;
 use hue_plane::HuePlanes;
 use polynomial::PolynomialPlanes;
 use residual::ResidualPlanes;
@@ -52,7 +52,7 @@ impl PlaneModel {
         let [r, g, b] = planes;
         let length = r.len().min(g.len()).min(b.len());
         let (r, g, b) = (&mut r[..length], &mut g[..length], &mut b[..length]);
-        vectorised(
+        vectorised_widely(
             #[inline(always)]
             || {
                 let blocks = r.chunks_mut(BLOCK).zip(g.chunks_mut(BLOCK)).zip(b.chunks_mut(BLOCK));

@@ -16,7 +16,7 @@ mod sites;
 #[cfg(test)]
 mod slow;
 
-use darkroot_colour::simd::vectorised;
+use darkroot_colour::simd::vectorised_widely;
 
 use super::signed_square;
 use mirror::{Folded, Mirrored, Predictions, site_at};
@@ -36,7 +36,7 @@ const TINY: f32 = 1e-30;
 
 /// Demosaics the inner part of an X-Trans mosaic whose array begins at `phase`.
 pub fn demosaic(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut Rgb<CameraSpace>) {
-    vectorised(
+    vectorised_widely(
         #[inline(always)]
         || run(mosaic, phase, border, picture),
     );
