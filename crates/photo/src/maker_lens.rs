@@ -66,7 +66,11 @@ impl MakerLens {
     pub fn has_fringes(&self) -> bool {
         let [red, green, blue] = &self.places;
         let apart = |plane: &Radial| {
-            plane.values.iter().zip(&green.values).any(|(a, b)| !(a - b).abs().is_finite() || (a - b).abs() > NOTHING)
+            plane
+                .values
+                .iter()
+                .zip(&green.values)
+                .any(|(a, b)| !(a - b).abs().is_finite() || (a - b).abs() > NOTHING)
         };
         apart(red) || apart(blue)
     }

@@ -22,7 +22,12 @@ const FUJIFILM_RATIO: u16 = 0x0115;
 const FUJIFILM_ZOOM: [u16; 3] = [0x0117, 0x0118, 0x0119];
 
 /// The part of the maker's picture that was chosen: as a DNG says it, or as the maker's note does in the maker's own file.
-pub(crate) fn user_crop(bytes: &[u8], tiff: Option<&Directories<'_>>, is_dng: bool, shown: Rect) -> Option<Rect> {
+pub(crate) fn user_crop(
+    bytes: &[u8],
+    tiff: Option<&Directories<'_>>,
+    is_dng: bool,
+    shown: Rect,
+) -> Option<Rect> {
     match (Raf::of(bytes), tiff) {
         (Some(raf), _) => fujifilm(raf, shown),
         (None, Some(tiff)) if is_dng => dng_extras::user_crop(tiff, shown),
@@ -102,7 +107,8 @@ fn fujifilm(raf: Raf<'_>, shown: Rect) -> Option<Rect> {
         (Some(&[top, left]), Some(&[height, width])) if is_active => {
             let [x, y, width, height] = [left, top, width, height].map(usize::from);
             let part = Rect { x: shown.x + x, y: shown.y + y, width, height };
-            let is_part = width > 0 && height > 0 && part.right() <= shown.right() && part.bottom() <= shown.bottom();
+            let is_part =
+                width > 0 && height > 0 && part.right() <= shown.right() && part.bottom() <= shown.bottom();
             is_part.then_some(part)
         }
         _ => None,
@@ -129,6 +135,7 @@ fn fujifilm(raf: Raf<'_>, shown: Rect) -> Option<Rect> {
 mod tests {
     use super::super::tests::{directory, file, longs};
     use super::*;
+    use darkroot_photo::metadata::tag;
 
     const SHOWN: Rect = Rect { x: 8, y: 12, width: 5184, height: 3456 };
 
@@ -174,6 +181,28 @@ mod tests {
         assert_eq!(cut(&note([0, 432, 4607, 3023]), shown), Some(wide));
         assert_eq!(cut(&note([0, 0, 4607, 3455]), shown), None);
         assert_eq!(cut(&note([0, 3000, 4607, 100]), shown), None);
+    }
+
+    #[test]
+    fn panasonic_says_the_edges_in_columns_and_rows_of_the_frame() {
+        let file = |edges: [u16; 4]| {
+            let [top, left, bottom, right] = edges.map(|v| v.to_le_bytes());
+            let entries: [(u16, u16, u32, &[u8]); 5] = [
+                (0x002f, 3, 1, &top),
+                (0x0030, 3, 1, &left),
+                (0x0031, 3, 1, &bottom),
+                (0x0032, 3, 1, &right),
+                (tag::MAKE, 2, 10, b"Panasonic\0"),
+            ];
+            [b"IIU\0\x08\0\0\0", &directory(8, &entries)[..]].concat()
+        };
+        let wide = Rect { x: 8, y: 12 + 270, width: 5184, height: 2916 };
+        assert_eq!(cut(&file([282, 8, 3198, 5192]), SHOWN), Some(wide));
+        for nothing in
+            [[12, 8, 3468, 5192], [0; 4], [3198, 8, 282, 5192], [0, 0, 3456, 5184], [282, 8, 9000, 5192]]
+        {
+            assert_eq!(cut(&file(nothing), SHOWN), None, "{nothing:?}");
+        }
     }
 
     #[test]

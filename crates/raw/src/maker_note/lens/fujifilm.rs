@@ -36,7 +36,8 @@ pub(super) fn said(raf: Raf<'_>) -> Read {
     }
     let part = raf.note().and_then(|(tiff, note)| note.number(&tiff, CROP_MODE)).unwrap_or(0);
     if !WHOLE.contains(&part) {
-        return Err("only a part of the sensor was read, and which radii its numbers mean then is not known".to_owned());
+        return Err("only a part of the sensor was read, and which radii its numbers mean then is not known"
+            .to_owned());
     }
     let [distortion] = curves(distortion, "distortion", |v| v / 100.0)?;
     let [red, blue] = curves(fringes, "lateral chromatic aberration", |v| v)?;
@@ -91,7 +92,8 @@ fn columns(
     what: &str,
 ) -> Result<Option<Columns>, String> {
     let Some(entry) = entry(directory, number) else { return Ok(None) };
-    let all = numbers(tiff, entry).ok_or_else(|| format!("its {what} is not the list of fractions that it should be"))?;
+    let all = numbers(tiff, entry)
+        .ok_or_else(|| format!("its {what} is not the list of fractions that it should be"))?;
     let knots = match (columns, all.len()) {
         (1, 19) | (2, 29) => 9,
         (1, 23) => 11,
@@ -118,7 +120,9 @@ fn curves<const N: usize>(
         let middle = knots.first().is_some_and(|&knot| knot > 0.0).then_some([0.0, 0.0]);
         let points = knots.iter().zip(&values).map(|(&knot, &v)| [knot, meaning(v)]);
         let through = Curve::through(middle.into_iter().chain(points).collect());
-        *curve = Some(through.ok_or_else(|| format!("the radii or values of its {what} are no numbers in order"))?);
+        *curve = Some(
+            through.ok_or_else(|| format!("the radii or values of its {what} are no numbers in order"))?,
+        );
     }
     Ok(curves)
 }

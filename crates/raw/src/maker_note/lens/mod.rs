@@ -15,7 +15,7 @@ mod tests;
 
 use darkroot_photo::{MakerLens, Radial};
 
-use super::{maker, is_olympus};
+use super::{is_olympus, maker};
 use crate::raf::Raf;
 use crate::tiff::{Directories, Directory, Entry};
 
@@ -37,7 +37,11 @@ struct Said {
 }
 
 /// What the file's own note says of the lens; why not, where it says something that is not used.
-pub(crate) fn lens(bytes: &[u8], tiff: Option<&Directories<'_>>, notes: &mut Vec<String>) -> Option<MakerLens> {
+pub(crate) fn lens(
+    bytes: &[u8],
+    tiff: Option<&Directories<'_>>,
+    notes: &mut Vec<String>,
+) -> Option<MakerLens> {
     let (maker, said) = match (Raf::of(bytes), tiff) {
         (Some(raf), _) => ("Fujifilm", fujifilm::said(raf)),
         (None, Some(tiff)) => of_tiff(tiff)?,

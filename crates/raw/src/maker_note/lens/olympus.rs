@@ -31,8 +31,7 @@ pub(super) fn said(tiff: &crate::tiff::Directories<'_>, make: &str) -> Read {
             },
         };
         let of_green = numbers(distortion, 4, "distortion")?.unwrap_or_else(|| vec![0.0, 0.0, 0.0, 1.0]);
-        let of_colours =
-            numbers(fringes, 6, "lateral chromatic aberration")?.unwrap_or_else(|| vec![0.0; 6]);
+        let of_colours = numbers(fringes, 6, "lateral chromatic aberration")?.unwrap_or_else(|| vec![0.0; 6]);
         let green = |r: f64| {
             let [a, b, c, s] = std::array::from_fn(|i| of_green[i]);
             let square = (s * r).powi(2);

@@ -55,7 +55,8 @@ fn list(
     what: &str,
 ) -> Result<Option<Vec<f64>>, String> {
     let Some(entry) = entry(directory, number) else { return Ok(None) };
-    let all = numbers(tiff, entry).ok_or_else(|| format!("its {what} is not the list of numbers that it should be"))?;
+    let all = numbers(tiff, entry)
+        .ok_or_else(|| format!("its {what} is not the list of numbers that it should be"))?;
     let Some((&count, values)) = all.split_first() else { return Ok(None) };
     if count < 0.0 || count as usize > values.len() {
         return Err(format!("its {what} names {count} numbers and has {}", values.len()));
