@@ -92,6 +92,25 @@ pub(super) const LENS: Setting = Setting {
     set: |to, text| put(&mut to.recipe.geometry.lens, one_of(&LENSES, text)),
 };
 
+pub(super) const LENS_NAME: Setting = Setting {
+    name: "lens-name",
+    alias: None,
+    noun: "name of a lens",
+    kind: Kind::Text {
+        form: "auto (what the file says), or the name of a lens as lensfun has it",
+        example: "\"Nikkor AF-S 18-55mm f/3.5-5.6G DX VR\"",
+    },
+    default: AUTO,
+    group: Group::Picture,
+    placeholder: "NAME",
+    help: "Lens to look up with --lens lensfun and maker, where the file names none, or only its numbers; auto: what the file says",
+    changes: Changes::Picture,
+    set: |to, text| {
+        to.recipe.lens_name = (text != AUTO && !text.trim().is_empty()).then(|| text.trim().to_owned());
+        Ok(())
+    },
+};
+
 pub(super) const VIGNETTING: Setting = Setting {
     name: "vignetting",
     alias: None,

@@ -57,9 +57,9 @@ impl LensWarp {
             (_, true) => warp.planes[1..2].to_vec(),
             (_, false) => warp.planes[..3].to_vec(),
         };
-        let nothing = Distortion::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let still = still();
         let moves =
-            warp.projection == Projection::Fisheye || !planes.iter().all(|plane| alike(plane, &nothing));
+            warp.projection == Projection::Fisheye || !planes.iter().all(|plane| alike(plane, &still));
         (reach > 0.0 && moves).then_some(Self::Dng { centre, reach, projection: warp.projection, planes })
     }
 
@@ -88,6 +88,17 @@ impl LensWarp {
         }
     }
 
+    /// Whether places move, and not only colours beside each other.
+    pub(super) fn moves_all(&self) -> bool {
+        match self {
+            Self::Dng { projection, planes, .. } => {
+                *projection == Projection::Fisheye || !alike(&planes[planes.len() / 2], &still())
+            }
+            Self::Measured { corrections, .. } => corrections.has_distortion(),
+            Self::Told { planes, .. } => !planes[planes.len() / 2].is_within(1.0, 1.0),
+        }
+    }
+
     /// Where the colour `channel` of a point comes from.
     pub(super) fn place(&self, channel: usize, [x, y]: [f64; 2]) -> [f64; 2] {
         match self {
@@ -108,6 +119,11 @@ impl LensWarp {
             }
         }
     }
+}
+
+/// What moves nothing.
+fn still() -> Distortion {
+    Distortion::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
 /// Distance of a picture's corners from its middle, pixels.

@@ -28,7 +28,13 @@ pub(super) fn optics(capture: &Capture, asked: &Geometry, measuring: bool, shown
         _ => LensWarp::of_file(capture, asked.keep_fringes),
     };
     if !of_file.is_empty() {
-        let note = Some("the lens's distortion is corrected as the file says".to_owned());
+        let what =
+            match (of_file.iter().any(LensWarp::moves_all), of_file.iter().any(LensWarp::splits_colours)) {
+                (true, true) => "distortion and lateral chromatic aberration",
+                (true, false) => "distortion",
+                (false, _) => "lateral chromatic aberration",
+            };
+        let note = Some(format!("the lens is corrected as the file says ({what})"));
         return Optics { warps: of_file, note, ..Optics::default() };
     }
     let with_light = |vignetting: Option<Vignetting>| {
@@ -68,7 +74,7 @@ pub(super) fn optics(capture: &Capture, asked: &Geometry, measuring: bool, shown
 fn not_applied(capture: &Capture) -> Option<String> {
     let mut all = capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
     if all.any(|correction| matches!(correction, Correction::Warp(_))) {
-        return Some("the file's correction of the lens's distortion is not applied".to_owned());
+        return Some("the file's correction of the lens is not applied".to_owned());
     }
     capture.maker_lens.as_ref().map(|told| {
         format!(
