@@ -56,6 +56,7 @@ class Settings(TypedDict, total=False):
     straighten: str | float | Sequence[float] | None
     perspective: str | float | Sequence[float] | None
     lens: Literal["auto", "file", "lensfun", "maker", "off"] | None
+    lens_name: str | float | Sequence[float] | None
     vignetting: bool | None
     ca: bool | None
     crop: str | float | Sequence[float] | None
