@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Contact sheets of real photographs with the lens corrected, beside other developers, for the eye.
 
-    sheets.py --darkroot target/release/darkroot --work DIR FILE...
+    sheets.py --darkroot target/release/darkroot --work DIR [--lens-name NAME] FILE...
 
 Of each file two sheets are written to DIR, at most 1000 pixels wide: `NAME.png` with the whole picture, under lines that are upright
 and level, and `NAME.corner.png` with the most detailed corner, a pixel of the picture for one of the sheet. Cells are Darkroot as
@@ -35,9 +35,10 @@ CELL = WIDTH // 2 - 4
 ALL = 8 | 2 | 1
 
 
-def by_darkroot(program, raw, work, lens):
+def by_darkroot(program, raw, work, lens, name):
     out = work / "darkroot.tif"
-    done = subprocess.run([program, "develop", raw, "-o", out, "--bits", "16", "--overwrite", "--lens", lens], capture_output=True, text=True)
+    options = ["--bits", "16", "--overwrite", "--lens", lens, "--lens-name", name]
+    done = subprocess.run([program, "develop", raw, "-o", out, *options], capture_output=True, text=True)
     if done.returncode:
         raise RuntimeError(done.stderr)
     return read(out), done.stderr
@@ -153,7 +154,7 @@ def shift(ours, theirs):
     peak = np.abs(np.fft.ifft2(cross / np.maximum(np.abs(cross), 1e-12)))
     at = np.array(np.unravel_index(peak.argmax(), peak.shape))
     near = [np.take(np.take(peak, (at[0] + d) % len(peak), 0), (at[1] + e) % peak.shape[1], 0) for d in (-1, 0, 1) for e in (-1, 0, 1)]
-    near = np.array(near).reshape(3, 3)
+    near = np.array(near).reshape(3, 3) + 1e-12
     part = np.array([(near * d).sum() / near.sum() for d in np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij")])
     at = at + part
     return np.where(at > np.array(peak.shape) / 2, at - peak.shape, at), peak.max()
@@ -182,10 +183,10 @@ def apart(ours, theirs):
     return np.median(left), np.percentile(left, 95), len(places)
 
 
-def of_file(program, raw, work):
+def of_file(program, raw, work, name):
     exif = exif_of(raw)
-    taken, _ = by_darkroot(program, raw, work, "off")
-    corrected, said = by_darkroot(program, raw, work, "lensfun")
+    taken, _ = by_darkroot(program, raw, work, "off", name)
+    corrected, said = by_darkroot(program, raw, work, "lensfun", name)
     known = re.search(r"lens: (.*?)(, by .*)? \(lensfun\)", said)
     print(f"{raw.name}: {known[1] if known else 'the file’s own correction' if 'as the file says' in said else 'no lens that Darkroot knows'}")
     pictures = [("Darkroot, as taken", taken), ("Darkroot", corrected)]
@@ -221,11 +222,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--darkroot", required=True)
     parser.add_argument("--work", type=Path, required=True)
+    parser.add_argument("--lens-name", default="auto", help="the lens of these files, where they do not name it")
     parser.add_argument("files", type=Path, nargs="+")
     arguments = parser.parse_args()
     arguments.work.mkdir(exist_ok=True, parents=True)
     for raw in arguments.files:
-        of_file(arguments.darkroot, raw, arguments.work)
+        of_file(arguments.darkroot, raw, arguments.work, arguments.lens_name)
 
 
 if __name__ == "__main__":
