@@ -53,10 +53,10 @@ pub(super) fn said(raf: Raf<'_>) -> Read {
     if !Radial::of(|r| 1.0 / factor(r)).grows() {
         return Err("its distortion is that of no lens".to_owned());
     }
-    let taken = |corrected: f64| inverse(corrected, factor);
+    let taken = Radial::of(|corrected| inverse(corrected, factor));
     let plane = |apart: &Option<Curve>| {
         Radial::of(|r| {
-            let taken = taken(r);
+            let taken = taken.at(r);
             factor(taken) * (1.0 + value(apart, taken))
         })
     };
