@@ -77,7 +77,7 @@ fn a_mutant_is_a_picture_or_a_sentence() {
                     _ => ProfileChoice::Matrix,
                 };
                 let mut settings = Settings { profile, ..Settings::default() };
-                settings.recipe.geometry.lens = if seed % 2 == 0 { Lens::Auto } else { Lens::Maker };
+                settings.recipe.geometry.lens = if seed.is_multiple_of(2) { Lens::Auto } else { Lens::Maker };
                 let plan = photo.plan(&photo.analyse_as_asked(), &store, &settings);
                 if plan.is_ok_and(tile) {
                     count(&pictures);
