@@ -2,6 +2,7 @@
 //! with what development needs. Numbers of the file itself have their highest byte first.
 
 use crate::exif;
+use crate::nikon_note::MAKER_NOTE;
 use crate::tiff::{Directories, Directory, EXIF_IFD};
 
 /// Where the places and lengths of the sections stand.
@@ -14,8 +15,6 @@ const MOST_RECORDS: u32 = 255;
 
 /// The directory with what development needs.
 const DEVELOPMENT: u16 = 0xf000;
-/// Fujifilm's note in Exif.
-const MAKER_NOTE: u16 = 0x927c;
 
 /// A RAF file.
 #[derive(Debug, Clone, Copy)]
