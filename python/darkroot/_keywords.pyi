@@ -55,7 +55,8 @@ class Settings(TypedDict, total=False):
     flip: Literal["off", "horizontal", "vertical"] | None
     straighten: str | float | Sequence[float] | None
     perspective: str | float | Sequence[float] | None
-    lens: Literal["auto", "file", "lensfun", "off"] | None
+    lens: Literal["auto", "file", "lensfun", "maker", "off"] | None
+    lens_name: str | float | Sequence[float] | None
     vignetting: bool | None
     ca: bool | None
     crop: str | float | Sequence[float] | None

@@ -129,19 +129,24 @@ def by_rawtherapee(raw, work, corrects):
     return read(out)
 
 
-def by_darktable(raw, work, corrects):
-    out, sidecar = work / "darktable.tif", work / "lens.xmp"
-    out.unlink(missing_ok=True)
-    # Version 5: what is corrected (8: distortion), direction, scale, crop factor, focal length, aperture, distance, projection
+def lens_sidecar(corrects, parts, camera, lens, focal, aperture, distance=10.0):
+    """An XMP by which darktable corrects these parts of this lens (8: distortion, 2: vignetting, 1: chromatic aberration)."""
+    # Version 5: what is corrected, direction, scale, crop factor, focal length, aperture, distance, projection
     # (1: rectilinear), camera, lens, no coefficients of its own, and that a person chose it.
-    numbers = struct.pack("<2i5fi128s128si2fi", 8, 0, 1.0, 1.0, FOCAL, 8.0, 10.0, 1, CAMERA.encode(), LENS.encode(), 0, 1.0, 1.0, 1)
-    sidecar.write_text(
+    numbers = struct.pack("<2i5fi128s128si2fi", parts, 0, 1.0, 1.0, focal, aperture, distance, 1, camera.encode(), lens.encode(), 0, 1.0, 1.0, 1)
+    return (
         '<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
         '<rdf:Description rdf:about="" xmlns:darktable="http://darktable.sf.net/" darktable:xmp_version="5" darktable:history_end="1">'
         f'<darktable:history><rdf:Seq><rdf:li darktable:num="0" darktable:operation="lens" darktable:enabled="{int(corrects)}" '
         f'darktable:modversion="5" darktable:params="{numbers.hex()}" darktable:multi_name="" darktable:multi_priority="0" '
         'darktable:blendop_version="1" darktable:blendop_params=""/></rdf:Seq></darktable:history></rdf:Description></rdf:RDF></x:xmpmeta>'
     )
+
+
+def by_darktable(raw, work, corrects):
+    out, sidecar = work / "darktable.tif", work / "lens.xmp"
+    out.unlink(missing_ok=True)
+    sidecar.write_text(lens_sidecar(corrects, 8, CAMERA, LENS, FOCAL, 8.0))
     options = ["--configdir", work / "darktable", "--library", ":memory:", "--conf", "plugins/imageio/format/tiff/bpp=16"]
     run("darktable-cli", raw, sidecar, out, "--icc-type", "SRGB", "--core", *options)
     return read(out)

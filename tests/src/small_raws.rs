@@ -1,9 +1,10 @@
 //! Small raw files of every kind that `simulate` writes, to be damaged.
 
 use darkroot_colour::Spectrum;
-use darkroot_photo::{Layout, Orientation, Size};
+use darkroot_photo::{BlackLevel, Layout, Orientation, Size};
 use darkroot_simulate::camera::{filters, x_trans};
 use darkroot_simulate::expose::expose;
+use darkroot_simulate::makers::{self, RafNotes};
 use darkroot_simulate::{Camera, Scene, dng, nef, samples};
 
 use crate::tiff_mutator::with_entry;
@@ -59,7 +60,30 @@ pub fn all() -> Vec<(String, Vec<u8>)> {
         "masked.dng".to_owned(),
         dng::write(&expose(&scene, &masked, &upright), dng::Storage::JpegStrip),
     ));
+    files.extend(with_lens_notes(&scene));
     files
+}
+
+/// Files of makers whose notes describe the lens: gentle ones, as far as the numbers are believed.
+fn with_lens_notes(scene: &Scene) -> [(String, Vec<u8>); 3] {
+    let shot = |camera: &Camera| expose(scene, camera, &samples::exposure(3));
+    let camera = Camera::simulated_one();
+    let sony = [(0x7035, vec![8, 0, 9, 19, 28, 0, -9, -19, -28]), (0x7037, vec![4, 0, -64, -128, -256])];
+    let knots: Vec<f64> = (1..=9).map(|i| f64::from(i) / 9.0).collect();
+    let list = |values: [f64; 9]| [vec![416.5], knots.clone(), values.to_vec()].concat();
+    let fujifilm = RafNotes {
+        lens: vec![(0xf00b, list([-1.0; 9])), (0xf010, list([90.0; 9]))],
+        records: vec![(0x0115, vec![9, 16])],
+        part: 0,
+    };
+    let twelve = Camera { bits: 12, white: 4000, black: BlackLevel::uniform(256.0), ..camera.clone() };
+    let olympus = [(0x150a, vec![-0.05, 0.01, 0.0, 1.0]), (0x150c, vec![0.0, 1e-3, 0.0, 0.0, -1e-3, 0.0])];
+    [
+        ("sony.arw", makers::arw(&shot(&camera), &sony, Some((56, 32)))),
+        ("fujifilm.raf", makers::raf(&shot(&camera), &fujifilm)),
+        ("olympus.orf", makers::orf(&shot(&twelve), &olympus)),
+    ]
+    .map(|(name, bytes)| (name.to_owned(), bytes.expect("such a file holds what the camera gives")))
 }
 
 /// The one of this name.

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use darkroot::settings::ProfileChoice;
 use darkroot::{Cancel, Photo, ProfileStore, Settings, View};
+use darkroot_develop::Lens;
 use darkroot_photo::Rect;
 use darkroot_raw::{Decoder, Limits, decode, header, preview};
 use darkroot_tests::small_raws;
@@ -39,6 +40,14 @@ fn opcode_lists_of_small_raw_files_are_read() {
 }
 
 #[test]
+fn notes_of_small_raw_files_on_the_lens_are_read() {
+    for name in ["sony.arw", "fujifilm.raf", "olympus.orf"] {
+        let capture = decode(&small_raws::named(name), Decoder::Flashraw, &LIMITS).unwrap();
+        assert!(capture.maker_lens.is_some_and(|lens| lens.has_distortion()), "{name}: {:?}", capture.notes);
+    }
+}
+
+#[test]
 fn a_mutant_is_a_picture_or_a_sentence() {
     let files = small_raws::all();
     let mutants = std::env::var("DARKROOT_MUTANTS").ok().and_then(|n| n.parse().ok()).unwrap_or(MUTANTS);
@@ -67,7 +76,8 @@ fn a_mutant_is_a_picture_or_a_sentence() {
                     0 => ProfileChoice::Automatic,
                     _ => ProfileChoice::Matrix,
                 };
-                let settings = Settings { profile, ..Settings::default() };
+                let mut settings = Settings { profile, ..Settings::default() };
+                settings.recipe.geometry.lens = if seed.is_multiple_of(2) { Lens::Auto } else { Lens::Maker };
                 let plan = photo.plan(&photo.analyse_as_asked(), &store, &settings);
                 if plan.is_ok_and(tile) {
                     count(&pictures);

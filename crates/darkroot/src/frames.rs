@@ -89,6 +89,9 @@ pub(crate) fn apply(photo: Photo, settings: &Settings) -> Result<Photo, Error> {
         let frames = read(path, &capture, settings)?;
         // The flat shows what is left after the file's own gain maps; what would come later is in it.
         capture.picture_corrections.retain(|correction| !matches!(correction, Correction::Vignette(_)));
+        if let Some(lens) = &mut capture.maker_lens {
+            lens.gain = None;
+        }
         companions::even_out(&mut capture, &frames).map_err(|fault| Error::frame(path, fault))?;
         capture.notes.push(format!("evened out by {}", counted(frames.len(), "flat frame")));
     }

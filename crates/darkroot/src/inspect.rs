@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use darkroot_colour::temperature::Temperature;
 use darkroot_develop::{Analysis, Histogram, Whites};
 use darkroot_photo::metadata::{Directory, Metadata, tag};
-use darkroot_photo::{AsShot, Calibration, Capture, Layout};
+use darkroot_photo::{AsShot, Calibration, Capture, Layout, MakerLens};
 use serde::Serialize;
 
 use crate::files;
@@ -202,8 +202,19 @@ pub fn inspect_photo(
         histogram: bins.iter().map(|h| h.to_vec()).collect(),
         samples_hash: hash,
         samples_mean: mean,
-        notes: capture.notes.clone(),
+        notes: capture.notes.iter().cloned().chain(capture.maker_lens.as_ref().map(of_lens)).collect(),
     })
+}
+
+/// What the maker's note says of the lens.
+fn of_lens(lens: &MakerLens) -> String {
+    format!(
+        "{}'s note describes the lens ({}); that could not be checked against pictures of the camera, and it is corrected only \
+         where that is asked for{}",
+        lens.maker,
+        lens.parts(),
+        lens.left.map_or_else(String::new, |left| format!("; {left}"))
+    )
 }
 
 /// Writes the embedded preview of a raw file, as it is stored.

@@ -5,8 +5,8 @@ use darkroot_photo::metadata::{Directory, tag};
 use darkroot_photo::{Capture, Correction};
 
 /// What is known, and words for it: what was found and is corrected, or why nothing is. `None` where the file has a
-/// correction of its own, which is better.
-pub(crate) fn known(capture: &Capture) -> Option<(Option<Corrections>, String)> {
+/// correction of its own, which is better. `name` is that of the lens, where a person says it.
+pub(crate) fn known(capture: &Capture, name: Option<&str>) -> Option<(Option<Corrections>, String)> {
     if capture.picture_corrections.iter().any(|c| matches!(c, Correction::Warp(_))) {
         return None;
     }
@@ -15,9 +15,10 @@ pub(crate) fn known(capture: &Capture) -> Option<(Option<Corrections>, String)> 
     let Some(focal_length) = number(tag::FOCAL_LENGTH) else {
         return Some((None, "the file names no focal length: the lens is not corrected".to_owned()));
     };
-    let lens_model = metadata.text(Directory::Exif, tag::LENS_MODEL);
+    let of_file = |tag| metadata.text(Directory::Exif, tag);
+    let lens_model = name.or_else(|| of_file(tag::LENS_MODEL));
     let shot = Shot {
-        lens_make: metadata.text(Directory::Exif, tag::LENS_MAKE),
+        lens_make: of_file(tag::LENS_MAKE).filter(|_| name.is_none()),
         lens_model,
         aperture: number(tag::F_NUMBER),
         distance: number(tag::SUBJECT_DISTANCE),
@@ -66,12 +67,16 @@ mod tests {
 
     #[test]
     fn a_lens_is_found_by_its_name_and_one_that_is_not_is_named() {
-        let (found, words) = known(&capture("EF-S18-55mm f/3.5-5.6 IS", 18)).unwrap();
+        let (found, words) = known(&capture("EF-S18-55mm f/3.5-5.6 IS", 18), None).unwrap();
         assert!(found.is_some_and(|c| c.has_distortion() && c.has_vignetting()), "{words}");
         assert!(words.contains("18-55mm") && words.contains("lensfun"), "{words}");
-        let (found, words) = known(&capture("Nameless 99mm", 99)).unwrap();
+        let (found, words) = known(&capture("Nameless 99mm", 99), None).unwrap();
         assert!(found.is_none() && words.contains("`Nameless 99mm`"), "{words}");
-        let (found, words) = known(&capture("EF-S18-55mm f/3.5-5.6 IS", 0)).unwrap();
+        let (found, words) = known(&capture("EF-S18-55mm f/3.5-5.6 IS", 0), None).unwrap();
         assert!(found.is_none() && words.contains("focal length"), "{words}");
+        // A person knows better.
+        let (found, words) =
+            known(&capture("Nameless 99mm", 18), Some("Canon EF-S 18-55mm f/3.5-5.6 IS")).unwrap();
+        assert!(found.is_some() && words.contains("18-55mm"), "{words}");
     }
 }

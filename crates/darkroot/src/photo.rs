@@ -215,8 +215,11 @@ impl Photo {
         profile: Option<&Profile>,
         mut recipe: Recipe,
     ) -> Result<Plan, darkroot_develop::Error> {
-        let asked = recipe.geometry.lens == Lens::Lensfun && !self.capture.rendered;
-        let (known, note) = asked.then(|| lens::known(&self.capture)).flatten().unzip();
+        let by_note = recipe.geometry.lens == Lens::Maker && self.capture.maker_lens.is_some();
+        let looks_up = matches!(recipe.geometry.lens, Lens::Lensfun | Lens::Maker) && !by_note;
+        let asked = looks_up && !self.capture.rendered;
+        let (known, note) =
+            asked.then(|| lens::known(&self.capture, recipe.lens_name.as_deref())).flatten().unzip();
         recipe.geometry.known = known.flatten();
         let lean = match (recipe.geometry.auto_straighten, self.tilt.get()) {
             (false, _) => None,

@@ -149,7 +149,7 @@ pub fn plan(analysis: &Analysis, profile: Option<&Profile>, recipe: &Recipe) -> 
     notes.extend(mends.notes());
     let denoiser = denoiser(analysis, recipe.denoise, as_it_is, multipliers, &mends);
     let is_applied = |correction: &&Correction| is_supported(correction);
-    notes.extend(laid.lens_note(capture));
+    notes.extend(laid.lens_note.clone());
     if recipe.crop == Crop::Default && capture.user_crop.is_some() {
         notes.push(
             "the picture is cut to what was chosen, as the file says; a crop of 100% shows all of it"

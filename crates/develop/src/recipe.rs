@@ -40,6 +40,8 @@ pub struct Recipe {
     pub crop: Crop,
     /// How that lies in the picture, and how large it gets.
     pub geometry: Geometry,
+    /// Name of the lens, for whoever looks up what is known of it; `None` for that in the metadata.
+    pub lens_name: Option<String>,
     /// Space and sample type of the result.
     pub output: Output,
 }

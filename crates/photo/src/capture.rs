@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use darkroot_colour::{Matrix3, Xy};
 
-use crate::{BlackLevel, Correction, Counts, LocalToneMap, Metadata, Orientation, Rect, WhiteLevel};
+use crate::{
+    BlackLevel, Correction, Counts, LocalToneMap, MakerLens, Metadata, Orientation, Rect, WhiteLevel,
+};
 
 /// Which camera took the picture.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -109,6 +111,8 @@ pub struct Capture {
     pub mosaic_corrections: Vec<Correction>,
     /// Corrections on demosaiced camera RGB (DNG OpcodeList3).
     pub picture_corrections: Vec<Correction>,
+    /// What the maker's note says of the lens; `None` where it says nothing that is understood.
+    pub maker_lens: Option<MakerLens>,
     /// What the maker's rendering does to each part of the picture; `None` where the file does not say.
     pub local_tone: Option<Arc<LocalToneMap>>,
     /// What the camera wrote about the shot.
@@ -150,6 +154,7 @@ impl Capture {
             noise_profile: Vec::new(),
             mosaic_corrections: Vec::new(),
             picture_corrections: Vec::new(),
+            maker_lens: None,
             local_tone: None,
             metadata: Metadata::default(),
             source: Source { format: nothing(), compression: nothing(), bits, decoder: nothing() },

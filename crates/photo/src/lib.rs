@@ -36,6 +36,9 @@ pub use correction::Correction;
 pub mod local_tone;
 pub use local_tone::LocalToneMap;
 
+pub mod maker_lens;
+pub use maker_lens::{MakerLens, Radial};
+
 pub mod planes;
 pub use planes::{Camera as CameraSpace, Display, Rgb, Scene, Toned};
 

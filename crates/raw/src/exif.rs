@@ -134,7 +134,7 @@ fn embedded_jpeg<'a>(bytes: &'a [u8], meta: &RawMetadata) -> Option<&'a [u8]> {
 }
 
 /// The Exif block of a JPEG: the first APP1 segment that says so (Exif 2.32, 4.7.2).
-fn exif_of_jpeg(jpeg: &[u8]) -> Option<&[u8]> {
+pub(crate) fn exif_of_jpeg(jpeg: &[u8]) -> Option<&[u8]> {
     let mut rest = jpeg.strip_prefix(&[0xff, 0xd8])?;
     while let [0xff, marker, high, low, ..] = *rest {
         let (segment, after) =

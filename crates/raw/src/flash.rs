@@ -289,7 +289,9 @@ fn describe(
     }
     notes.extend(tiff.map(dng_extras::notes).unwrap_or_default());
     let default_crop = rect(info.crop, size);
-    let user_crop = tiff.and_then(|tiff| maker_note::user_crop(tiff, is_dng, default_crop));
+    let user_crop = maker_note::user_crop(bytes, tiff, is_dng, default_crop);
+    // What a converter wrote for the lens stands in the DNG's own lists.
+    let maker_lens = if is_dng { None } else { maker_note::lens(bytes, tiff, &mut notes) };
     let white = white_level(info, &layout);
     let (calibrations, analog_balance) = calibrations(&info.color_matrices);
     let as_shot = as_shot(meta, info);
@@ -330,6 +332,7 @@ fn describe(
         noise_profile: noise_profile(meta),
         mosaic_corrections,
         picture_corrections,
+        maker_lens,
         local_tone,
         metadata,
         source: Source {

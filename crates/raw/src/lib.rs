@@ -42,6 +42,7 @@ mod local_tone;
 mod maker_note;
 mod nef_packing;
 mod nikon_note;
+mod raf;
 
 mod exif;
 mod opcode_work;

@@ -131,6 +131,7 @@ pub fn expose(scene: &Scene, camera: &Camera, exposure: &Exposure) -> Capture {
         mosaic_corrections: Vec::new(),
         noise_profile: Vec::new(),
         picture_corrections: Vec::new(),
+        maker_lens: None,
         local_tone: None,
         metadata: exposure.metadata.clone(),
         source: Source {

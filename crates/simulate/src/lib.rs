@@ -1,7 +1,7 @@
 //! Reflectances x light x camera to captures, and DNG and NEF bytes of them.
 //!
 //! A [`Scene`] says which reflectance each pixel shows; [`expose`](expose::expose) makes a
-//! [`darkroot_photo::Capture`] of it as a [`Camera`] would, and [`dng::write`] and [`nef::write`] make files of that, so
+//! [`darkroot_photo::Capture`] of it as a [`Camera`] would, and [`dng::write`], [`nef::write`] and [`makers`] make files of that, so
 //! what a developed picture ought to look like is known exactly.
 //!
 //! **What it does not do:** it reads no file and no clock; it simulates no lens but for shading and veiling glare.
@@ -23,6 +23,7 @@ pub mod expose;
 pub use expose::Exposure;
 
 pub mod dng;
+pub mod makers;
 pub mod nef;
 
 pub mod levels;

@@ -88,7 +88,7 @@ pub fn write_high_efficiency(capture: &Capture, jpeg: Vec<u8>) -> Option<Vec<u8>
 }
 
 /// The mosaic of a capture that a NEF can hold.
-fn storable(capture: &Capture) -> Option<(&Mosaic<u16>, &Cfa)> {
+pub(crate) fn storable(capture: &Capture) -> Option<(&Mosaic<u16>, &Cfa)> {
     let bits = capture.source.bits;
     let Counts::U16(mosaic) = &capture.counts else { return None };
     let Layout::Cfa(cfa) = &mosaic.layout else { return None };
@@ -156,7 +156,7 @@ fn split_row(height: usize) -> usize {
 }
 
 /// Each row by itself, the most significant bit first.
-fn highest_first(samples: &[u16], width: usize, bits: u8) -> Vec<u8> {
+pub(crate) fn highest_first(samples: &[u16], width: usize, bits: u8) -> Vec<u8> {
     let row = |row: &[u16]| {
         let mut packed = Bits::default();
         row.iter().for_each(|&s| packed.push(u32::from(s), bits.into()));

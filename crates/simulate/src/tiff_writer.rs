@@ -10,7 +10,9 @@ mod kind {
     pub(super) const LONG: u16 = 4;
     pub(super) const RATIONAL: u16 = 5;
     pub(super) const UNDEFINED: u16 = 7;
+    pub(super) const SIGNED_SHORT: u16 = 8;
     pub(super) const SIGNED_RATIONAL: u16 = 10;
+    pub(super) const FLOAT: u16 = 11;
 }
 
 /// An image file directory to be written.
@@ -22,6 +24,10 @@ pub(crate) struct Ifd {
 #[derive(Debug, Clone)]
 enum Entry {
     Value(Value),
+    /// Signed numbers of 16 bits.
+    SignedShorts(Vec<i16>),
+    /// Numbers of 32 bits with a floating point.
+    Floats(Vec<f32>),
     Directories(Vec<Ifd>),
     /// Offsets of pieces of picture data; the second number is the tag of their lengths.
     Pieces(Vec<Vec<u8>>),
@@ -41,6 +47,16 @@ impl Ifd {
     /// Adds 16-bit numbers.
     pub(crate) fn shorts(&mut self, tag: u16, numbers: &[u16]) -> &mut Self {
         self.put(tag, Value::Shorts(numbers.to_vec()))
+    }
+
+    /// Adds signed 16-bit numbers, which only makers' notes have.
+    pub(crate) fn signed_shorts(&mut self, tag: u16, numbers: &[i16]) -> &mut Self {
+        self.insert(tag, Entry::SignedShorts(numbers.to_vec()))
+    }
+
+    /// Adds 32-bit numbers with a floating point, which only makers' notes have.
+    pub(crate) fn floats(&mut self, tag: u16, numbers: &[f32]) -> &mut Self {
+        self.insert(tag, Entry::Floats(numbers.to_vec()))
     }
 
     /// Adds sizes as 32-bit numbers; no picture of this crate comes near the limit.
@@ -98,7 +114,12 @@ fn fraction(n: f64) -> [i32; 2] {
 
 /// A whole file with one chain of one directory.
 pub(crate) fn file(root: &Ifd) -> Vec<u8> {
-    let mut out = Out { bytes: b"II*\0\x08\0\0\0".to_vec(), pieces: Vec::new() };
+    after(b"II*\0\x08\0\0\0", root)
+}
+
+/// A directory, and all that it points to, after these bytes, from whose beginning offsets count.
+pub(crate) fn after(head: &[u8], root: &Ifd) -> Vec<u8> {
+    let mut out = Out { bytes: head.to_vec(), pieces: Vec::new() };
     out.directory(root);
     for (patch, piece) in std::mem::take(&mut out.pieces) {
         out.align();
@@ -126,6 +147,10 @@ impl<'a> Out<'a> {
             let place = start + 2 + 12 * i;
             let (kind, count, bytes) = match entry {
                 Entry::Value(value) => encode(value),
+                Entry::SignedShorts(v) => {
+                    (kind::SIGNED_SHORT, v.len(), v.iter().flat_map(|n| n.to_le_bytes()).collect())
+                }
+                Entry::Floats(v) => (kind::FLOAT, v.len(), v.iter().flat_map(|n| n.to_le_bytes()).collect()),
                 Entry::Directories(below) => {
                     let offsets: Vec<u8> =
                         below.iter().flat_map(|ifd| self.directory(ifd).to_le_bytes()).collect();

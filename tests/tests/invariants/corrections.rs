@@ -215,9 +215,32 @@ fn what_is_not_applied_is_said() {
     let geometry = Geometry { lens: Lens::Off, ..Geometry::default() };
     let recipe = Recipe { geometry, output: output(RgbSpace::SRGB, Bits::Eight), ..Recipe::default() };
     let plan = darkroot_tests::plan(&warped, None, &recipe).unwrap();
-    assert!(plan.notes.iter().any(|note| note.contains("distortion is not applied")), "{:?}", plan.notes);
+    assert!(
+        plan.notes.iter().any(|note| note.contains("correction of the lens is not applied")),
+        "{:?}",
+        plan.notes
+    );
     let plain = flat_grey(filters("RGGB"), SIZE, LEVEL);
     let expected = darkroot_tests::plan(&plain, None, &recipe).unwrap();
     assert!(expected.notes.is_empty());
     assert!(darkroot_tests::rendered(&plan) == darkroot_tests::rendered(&expected));
+}
+
+#[test]
+fn what_is_corrected_is_said() {
+    let still = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let (larger, bent) = ([1.001, 0.0, 0.0, 0.0, 0.0, 0.0], [1.0, 0.1, 0.0, 0.0, 0.0, 0.0]);
+    for (planes, words) in [
+        (vec![bent], "(distortion)"),
+        (vec![bent, bent, bent], "(distortion)"),
+        (vec![larger, still, larger], "(lateral chromatic aberration)"),
+        (vec![larger, bent, bent], "(distortion and lateral chromatic aberration)"),
+    ] {
+        let planes = planes.into_iter().map(Into::into).collect();
+        let warp = Warp { projection: Projection::Rectilinear, planes, centre: (0.5, 0.5) };
+        let warped = with(vec![], vec![Correction::Warp(warp)], filters("RGGB"));
+        let geometry = Geometry { lens: Lens::File, ..Geometry::default() };
+        let plan = darkroot_tests::plan(&warped, None, &Recipe { geometry, ..Recipe::default() }).unwrap();
+        assert!(plan.notes.iter().any(|note| note.contains(words)), "{words}: {:?}", plan.notes);
+    }
 }

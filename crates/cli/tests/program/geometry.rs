@@ -115,6 +115,8 @@ fn a_lens_that_lensfun_knows_is_named_and_corrected_and_another_one_is_named() {
     let desk = Desk::with_dng();
     let run = desk.develop(&["a.dng", "-o", "o.png", "--lens", "lensfun"]);
     assert!(run.err.contains("does not know `Simulated 85mm f/1.8`"), "{}", run.err);
+    let run = desk.develop(&["a.dng", "-o", "p.png", "--lens", "lensfun", "--lens-name", "Other 85mm"]);
+    assert!(run.err.contains("does not know `Other 85mm`"), "{}", run.err);
     let mut metadata = darkroot_simulate::expose::metadata();
     let text = |s: &str| Field::Text(s.to_owned());
     metadata.set(Directory::Exif, tag::LENS_MAKE, text("Canon"));
@@ -127,6 +129,13 @@ fn a_lens_that_lensfun_knows_is_named_and_corrected_and_another_one_is_named() {
     desk.put("b.dng", dng::write(&capture, dng::Storage::Uncompressed));
     let run = desk.develop(&["b.dng", "-o", "b.png", "--lens", "lensfun"]);
     assert!(run.err.contains("24-105mm") && run.err.contains("(lensfun)"), "{}", run.err);
+    let other = "Canon EF 24-70mm f/2.8L USM";
+    let run = desk.develop(&["b.dng", "-o", "other.png", "--lens", "lensfun", "--lens-name", other]);
+    assert!(
+        run.err.contains("24-70mm f/2.8L") && desk.read("b.png") != desk.read("other.png"),
+        "{}",
+        run.err
+    );
     desk.develop(&["b.dng", "-o", "plain.png"]);
     assert_ne!(desk.read("b.png"), desk.read("plain.png"));
     desk.develop(&["b.dng", "-o", "off.png", "--lens", "off"]);

@@ -21,6 +21,7 @@ mod inspect;
 mod linear_dng;
 mod looks;
 mod luts;
+mod maker_lens;
 mod metadata;
 mod open;
 mod outputs;

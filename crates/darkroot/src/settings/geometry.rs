@@ -18,10 +18,16 @@ const FLIPS: [Word<Flip>; 3] = [
     word("horizontal", Flip::Horizontal, "Left becomes right"),
     word("vertical", Flip::Vertical, "Top becomes bottom"),
 ];
-const LENSES: [Word<Lens>; 4] = [
+const LENSES: [Word<Lens>; 5] = [
     word(AUTO, Lens::Auto, "What the file carries; in the linear look and in camera RGB none"),
     word("file", Lens::File, "What the file carries"),
     word("lensfun", Lens::Lensfun, "What the file carries, else what lensfun's database has of the lens"),
+    word(
+        "maker",
+        Lens::Maker,
+        "What the file carries, else what the maker's note says, which nobody has checked against pictures of the camera, else what \
+         lensfun's database has of the lens",
+    ),
     word("off", Lens::Off, "None"),
 ];
 
@@ -81,9 +87,28 @@ pub(super) const LENS: Setting = Setting {
     default: AUTO,
     group: Group::Picture,
     placeholder: "",
-    help: "Which correction of the lens is applied: distortion, lateral chromatic aberration and, from lensfun, vignetting",
+    help: "Which correction of the lens is applied: distortion, lateral chromatic aberration and, from lensfun and makers' notes, vignetting",
     changes: Changes::Picture,
     set: |to, text| put(&mut to.recipe.geometry.lens, one_of(&LENSES, text)),
+};
+
+pub(super) const LENS_NAME: Setting = Setting {
+    name: "lens-name",
+    alias: None,
+    noun: "name of a lens",
+    kind: Kind::Text {
+        form: "auto (what the file says), or the name of a lens as lensfun has it",
+        example: "\"Nikkor AF-S 18-55mm f/3.5-5.6G DX VR\"",
+    },
+    default: AUTO,
+    group: Group::Picture,
+    placeholder: "NAME",
+    help: "Lens to look up with --lens lensfun and maker, where the file names none, or only its numbers; auto: what the file says",
+    changes: Changes::Picture,
+    set: |to, text| {
+        to.recipe.lens_name = (text != AUTO && !text.trim().is_empty()).then(|| text.trim().to_owned());
+        Ok(())
+    },
 };
 
 pub(super) const VIGNETTING: Setting = Setting {
@@ -94,7 +119,7 @@ pub(super) const VIGNETTING: Setting = Setting {
     default: "true",
     group: Group::Picture,
     placeholder: "BOOL",
-    help: "Whether light that the lens lost towards the edges is made good, with --lens lensfun",
+    help: "Whether light that the lens lost towards the edges is made good, with --lens lensfun and maker",
     changes: Changes::Picture,
     set: |to, text| put(&mut to.recipe.geometry.keep_vignetting, one_of(&SWITCH, text).map(|on| !on)),
 };

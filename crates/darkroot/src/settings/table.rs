@@ -7,7 +7,9 @@ use super::about::{ARTIST, COPYRIGHT, METADATA, SET_TAG};
 use super::files::{CHROMA_SUBSAMPLING, HDR, PROGRESSIVE, QUALITY, TIFF_COMPRESSION, WEBP_KIND};
 use super::frames::{DARK, FLAT};
 use super::from_chart::{BLACK_FROM_CHART, CHART_LAYOUT, CHART_REFERENCE, EXPOSURE_FROM_CHART, set_balance};
-use super::geometry::{CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING};
+use super::geometry::{
+    CROP, DPI, ENLARGE, FLIP, FRINGES, LENS, LENS_NAME, RESIZE, ROTATE, STRAIGHTEN, VIGNETTING,
+};
 use super::noise::{BANDING, DENOISE, DENOISE_CHROMA, DENOISE_LUMA, HOT_PIXELS};
 use super::perspective::PERSPECTIVE;
 use super::setting::{Changes, Group, Kind, Setting};
@@ -27,7 +29,7 @@ pub(super) fn put<T>(place: &mut T, value: Result<T, NotAValue>) -> Result<(), N
 }
 
 /// Every setting, in the order in which people are shown them.
-pub const SETTINGS: [Setting; 59] = [
+pub const SETTINGS: [Setting; 60] = [
     Setting {
         name: "format",
         alias: None,
@@ -211,6 +213,7 @@ pub const SETTINGS: [Setting; 59] = [
     STRAIGHTEN,
     PERSPECTIVE,
     LENS,
+    LENS_NAME,
     VIGNETTING,
     FRINGES,
     CROP,

@@ -47,9 +47,9 @@ pub struct Geometry {
     pub perspective: Option<Perspective>,
     /// What is done about the lens.
     pub lens: Lens,
-    /// What a database knows of the lens, for [`Lens::Lensfun`]. Whoever knows the photograph's metadata sets it.
+    /// What a database knows of the lens, for [`Lens::Lensfun`] and [`Lens::Maker`]. Whoever knows the photograph's metadata sets it.
     pub known: Option<Corrections>,
-    /// Whether the lens's loss of light towards the edges is made good, as `known` has it.
+    /// Whether the lens's loss of light towards the edges is left, where `known` or the maker's note has it.
     pub keep_vignetting: bool,
     /// Whether red and blue stay where the lens put them.
     pub keep_fringes: bool,
@@ -95,6 +95,8 @@ pub enum Lens {
     File,
     /// What the file carries, else what the lensfun database knows.
     Lensfun,
+    /// What the file carries, else what the maker's note says, which could not be checked, else what the lensfun database knows.
+    Maker,
     /// None.
     Off,
 }

@@ -1,13 +1,14 @@
 //! From what was asked to a rectangle of the frame, or to a map into it.
 
 use darkroot_colour::Matrix3;
-use darkroot_lens::Corrections;
-use darkroot_photo::{Capture, Correction, Orientation, Rect, Size};
+use darkroot_photo::{Capture, Orientation, Rect, Size};
 
 use super::homography::{moved, place, scaled, turned};
 use super::lens::LensWarp;
+use super::optics::optics;
+use super::vignetting::Vignetting;
 use super::warp::Warp;
-use super::{Crop, Flip, Geometry, Lens, Resize, Turn, perspective};
+use super::{Crop, Flip, Geometry, Resize, Turn, perspective};
 use crate::error::{Error, GeometryFault};
 
 /// Longest side of a picture.
@@ -25,20 +26,12 @@ pub(crate) struct Laid {
     /// Where its pixels come from, where that is between pixels.
     pub(crate) warp: Option<Warp>,
     /// What is known of the light that the lens lost, and the middle of its picture, in columns and rows of the frame.
-    pub(crate) vignetting: Option<(Corrections, [f64; 2])>,
+    pub(crate) vignetting: Option<(Vignetting, [f64; 2])>,
+    /// What became of the correction of the lens that the file carries, and of what the maker's note says.
+    pub(crate) lens_note: Option<String>,
 }
 
 impl Laid {
-    /// What became of the correction of the lens that the file carries.
-    pub(crate) fn lens_note(&self, capture: &Capture) -> Option<String> {
-        let is_warp = |correction: &Correction| matches!(correction, Correction::Warp(_));
-        let mut all = capture.mosaic_corrections.iter().chain(&capture.picture_corrections);
-        if self.warp.as_ref().is_some_and(Warp::corrects_as_the_file_says) {
-            return Some("the lens's distortion is corrected as the file says".to_owned());
-        }
-        all.any(is_warp).then(|| "the file's correction of the lens's distortion is not applied".to_owned())
-    }
-
     /// Whether a correction of the lens moves red, green and blue apart.
     pub(crate) fn splits_colours(&self) -> bool {
         self.warp.as_ref().is_some_and(Warp::splits_colours)
@@ -82,18 +75,10 @@ pub(crate) fn lay(
     let canvas = orientation.applied_to(shown.size());
     let area = capture.active_area;
     let in_area = |rect: Rect| Rect { x: rect.x - area.x, y: rect.y - area.y, ..rect };
-    let of_file = match asked.lens {
-        Lens::Off => Vec::new(),
-        Lens::Auto if measuring => Vec::new(),
-        Lens::Auto | Lens::File | Lens::Lensfun => LensWarp::of_file(capture, asked.keep_fringes),
-    };
-    let known = asked.known.filter(|_| asked.lens == Lens::Lensfun && of_file.is_empty());
-    let known = known.map(|known| if asked.keep_fringes { known.without_tca() } else { known });
-    let vignetting = known.filter(|known| known.has_vignetting() && !asked.keep_vignetting);
-    let vignetting = vignetting.map(|known| (known, capture.default_crop.middle()));
-    let of_lens = known.and_then(|known| LensWarp::known(known, in_area(capture.default_crop)));
-    let zoom = of_lens.as_ref().map_or(1.0, |lens| zoom(lens, in_area(shown), area.size()));
-    let lens = [of_file, of_lens.into_iter().collect()].concat();
+    let optics = optics(capture, asked, measuring, in_area(capture.default_crop));
+    let fitted = optics.warps.first().filter(|_| optics.is_to_fit);
+    let zoom = fitted.map_or(1.0, |lens| zoom(lens, in_area(shown), area.size()));
+    let (lens, vignetting, lens_note) = (optics.warps, optics.vignetting, optics.note);
     let straight = asked.straighten == 0.0 && asked.perspective.is_none();
     let to_canvas = to_canvas(canvas, asked)?;
     let part = part(crop, canvas, &to_canvas, straight)?;
@@ -104,7 +89,7 @@ pub(crate) fn lay(
         let upright = Rect { x: part.x as usize, y: part.y as usize, width: size.width, height: size.height };
         let cut = orientation.inverse().place_rect(upright, canvas);
         let crop = Rect { x: shown.x + cut.x, y: shown.y + cut.y, ..cut };
-        return Ok(Laid { size, crop, orientation, warp: None, vignetting });
+        return Ok(Laid { size, crop, orientation, warp: None, vignetting, lens_note });
     }
     let (across, down) = (width / size.width as f64, height / size.height as f64);
     let in_area = in_area(shown);
@@ -117,7 +102,7 @@ pub(crate) fn lay(
         * moved(part.x, part.y)
         * scaled(across, down);
     let warp = Warp::new(to_frame, lens, area.size(), zoom * across.max(down), sharpening);
-    Ok(Laid { size, crop: shown, orientation, warp: Some(warp), vignetting })
+    Ok(Laid { size, crop: shown, orientation, warp: Some(warp), vignetting, lens_note })
 }
 
 /// By what a corrected picture must be multiplied about its middle so that all of it comes from the frame, and most of the

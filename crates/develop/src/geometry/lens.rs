@@ -2,7 +2,7 @@
 
 use darkroot_lens::Corrections;
 use darkroot_photo::correction::{Distortion, Projection, Warp};
-use darkroot_photo::{Capture, Correction, Rect, Size};
+use darkroot_photo::{Capture, Correction, MakerLens, Radial, Rect, Size};
 
 /// One correction of a lens, for a picture of known size.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +22,15 @@ pub(super) enum LensWarp {
         /// Column and row of the optical centre.
         centre: [f64; 2],
         corrections: Corrections,
+    },
+    /// What the maker's note says.
+    Told {
+        /// Column and row of the optical centre.
+        centre: [f64; 2],
+        /// Half the diagonal of what the maker shows, pixels.
+        reach: f64,
+        /// By what the radius of a place is multiplied, for red, green and blue, or for all.
+        planes: Vec<Radial>,
     },
 }
 
@@ -48,9 +57,9 @@ impl LensWarp {
             (_, true) => warp.planes[1..2].to_vec(),
             (_, false) => warp.planes[..3].to_vec(),
         };
-        let nothing = Distortion::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let still = still();
         let moves =
-            warp.projection == Projection::Fisheye || !planes.iter().all(|plane| alike(plane, &nothing));
+            warp.projection == Projection::Fisheye || !planes.iter().all(|plane| alike(plane, &still));
         (reach > 0.0 && moves).then_some(Self::Dng { centre, reach, projection: warp.projection, planes })
     }
 
@@ -60,11 +69,33 @@ impl LensWarp {
             .then(|| Self::Measured { centre: shown.middle(), corrections })
     }
 
+    /// What a maker's note says of a lens whose picture lies at `shown` of the active area; `None` where it moves nothing.
+    pub(super) fn told(lens: &MakerLens, shown: Rect) -> Option<Self> {
+        let planes = match (lens.has_fringes(), lens.has_distortion()) {
+            (true, _) => lens.places.to_vec(),
+            (false, true) => lens.places[1..2].to_vec(),
+            (false, false) => return None,
+        };
+        Some(Self::Told { centre: shown.middle(), reach: half_diagonal(shown.size()), planes })
+    }
+
     /// Whether red, green and blue come from different places.
     pub(super) fn splits_colours(&self) -> bool {
         match self {
             Self::Dng { planes, .. } => planes.iter().any(|plane| !alike(plane, &planes[0])),
             Self::Measured { corrections, .. } => corrections.has_tca(),
+            Self::Told { planes, .. } => planes.len() > 1,
+        }
+    }
+
+    /// Whether places move, and not only colours beside each other.
+    pub(super) fn moves_all(&self) -> bool {
+        match self {
+            Self::Dng { projection, planes, .. } => {
+                *projection == Projection::Fisheye || !alike(&planes[planes.len() / 2], &still())
+            }
+            Self::Measured { corrections, .. } => corrections.has_distortion(),
+            Self::Told { planes, .. } => !planes[planes.len() / 2].is_within(1.0, 1.0),
         }
     }
 
@@ -81,8 +112,23 @@ impl LensWarp {
                 let (u, v) = corrections.place(x - centre[0], y - centre[1])[channel];
                 [centre[0] + u, centre[1] + v]
             }
+            Self::Told { centre, reach, planes } => {
+                let (dx, dy) = (x - centre[0], y - centre[1]);
+                let factor = planes[channel.min(planes.len() - 1)].at(dx.hypot(dy) / reach);
+                [centre[0] + factor * dx, centre[1] + factor * dy]
+            }
         }
     }
+}
+
+/// What moves nothing.
+fn still() -> Distortion {
+    Distortion::from([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+}
+
+/// Distance of a picture's corners from its middle, pixels.
+pub(super) fn half_diagonal(size: Size) -> f64 {
+    0.5 * (size.width as f64).hypot(size.height as f64)
 }
 
 /// Where a point comes from, both in units of the reach from the centre.

@@ -9,6 +9,7 @@ mod asked;
 mod homography;
 mod lay;
 mod lens;
+mod optics;
 mod perspective;
 mod resample;
 mod runs;

@@ -58,11 +58,6 @@ impl Warp {
         ((of_frame as f64 / self.reduction.max(1.0)) as usize).max(1)
     }
 
-    /// Whether it corrects a lens, and as the file says.
-    pub(super) fn corrects_as_the_file_says(&self) -> bool {
-        matches!(self.lens.first(), Some(LensWarp::Dng { .. }))
-    }
-
     /// Whether red, green and blue of a place come from different ones.
     pub(super) fn splits_colours(&self) -> bool {
         self.lens.iter().any(LensWarp::splits_colours)

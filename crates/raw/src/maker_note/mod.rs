@@ -5,6 +5,8 @@
 
 mod aspect;
 pub(crate) use aspect::user_crop;
+mod lens;
+pub(crate) use lens::lens;
 
 use darkroot_photo::metadata::{Directory as Place, Metadata, Value, tag};
 
@@ -119,6 +121,12 @@ fn directory<'a>(note: &Note<'a>, make: &str) -> Option<(Directories<'a>, Direct
         make if make.starts_with("canon") || make.starts_with("nikon") => of_file(0),
         _ => None,
     }
+}
+
+/// The maker that the file names, in small letters.
+fn maker(tiff: &Directories<'_>) -> Option<String> {
+    let make = tiff.all.first()?.entries.iter().find(|entry| entry.tag == tag::MAKE)?;
+    Some(String::from_utf8_lossy(tiff.value(make, 64)?).to_lowercase())
 }
 
 fn is_olympus(make: &str) -> bool {

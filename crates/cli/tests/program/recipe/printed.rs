@@ -70,7 +70,7 @@ fn a_recipe_says_where_each_value_is_from() {
     let report: Value = serde_json::from_str(&desk.run(&["recipe", "--json", "roll/a.dng"]).out).unwrap();
     assert_eq!(report["file"], "roll/a.dng");
     let settings = report["settings"].as_object().unwrap();
-    assert_eq!(settings.len(), 59);
+    assert_eq!(settings.len(), 60);
     assert_eq!((&settings["look"]["value"], &settings["look"]["from"]), (&"vivid".into(), &"folder".into()));
     assert!(settings["look"]["path"].as_str().unwrap().ends_with("roll/darkroot.toml"));
     assert_eq!(
