@@ -137,9 +137,19 @@ export class Picture extends EventTarget {
   /** A place of the window in pixels of the picture, or `null` beside it. */
   at(event) {
     if (!this.#size) return null;
-    const box = this.element.getBoundingClientRect();
-    const place = [(event.clientX - box.left - this.#at[0]) / this.#zoom, (event.clientY - box.top - this.#at[1]) / this.#zoom];
+    const place = this.under(event);
     return place.every((v, i) => v >= 0 && v < this.#size[i]) ? place : null;
+  }
+
+  /** A place of the window in pixels of the picture, also beside it. */
+  under(event) {
+    const box = this.element.getBoundingClientRect();
+    return [(event.clientX - box.left - this.#at[0]) / this.#zoom, (event.clientY - box.top - this.#at[1]) / this.#zoom];
+  }
+
+  /** A place of the picture in pixels of the stage. */
+  onStage(place) {
+    return place.map((v, i) => this.#at[i] + v * this.#zoom);
   }
 
   #resized() {

@@ -7,6 +7,7 @@ use darkroot::{Cancel, Limits, Photo, ProfileStore, Scale, Settings};
 use darkroot_batch::facts::modified;
 use darkroot_colour::RgbSpace;
 use darkroot_photo::{Orientation, Picture, PictureSpace, Samples, Size};
+use darkroot_raw::Preview;
 use image::imageops::FilterType;
 
 use crate::fault::Fault;
@@ -20,6 +21,8 @@ const LONGEST: u32 = 640;
 const ENOUGH: u32 = 300;
 /// The same where it is to be there at once: the thumbnails of most cameras have 160 x 120 pixels.
 const ENOUGH_AT_ONCE: u32 = 120;
+/// Bytes of a file within which most cameras store their small pictures.
+const START: u64 = 1 << 20;
 /// Bytes of all that are kept.
 const KEPT: usize = 64 << 20;
 
@@ -61,12 +64,7 @@ impl Smalls {
         if let Some(kept) = kept.filter(|kept| at_once || !kept.coarse) {
             return Ok(kept.jpeg);
         }
-        let bytes = place.read().map_err(|e| Fault::unusable(e.to_string()))?;
-        let (jpeg, coarse) = match embedded(&bytes, if at_once { ENOUGH_AT_ONCE } else { ENOUGH }) {
-            Some((jpeg, longest)) => (jpeg, at_once && longest < ENOUGH as usize),
-            None => (developed(&bytes, place, store)?, false),
-        };
-        let small = Small { jpeg: jpeg.into(), coarse };
+        let small = made(place, store, at_once)?;
         locked(&self.0).keep(identity, small.clone());
         Ok(small.jpeg)
     }
@@ -86,14 +84,43 @@ impl Kept {
     }
 }
 
-/// The smallest embedded picture whose longest side has `enough` pixels, upright and no larger than it must be. `None` where there is none, or
-/// none that is sound. With the longest side that it has as stored.
-fn embedded(bytes: &[u8], enough: u32) -> Option<(Vec<u8>, usize)> {
-    let preview = darkroot_raw::preview_to_show(bytes, enough).ok()??;
-    let longest = preview.size.width.max(preview.size.height);
-    let fits = longest <= LONGEST as usize;
+/// The small picture of a file that is not kept: an embedded one, else what the engine makes.
+fn made(place: &Place, store: &ProfileStore, at_once: bool) -> Result<Small, Fault> {
+    let enough = if at_once { ENOUGH_AT_ONCE } else { ENOUGH };
+    let unusable = |e: darkroot::Error| Fault::unusable(e.to_string());
+    let small = |preview: Preview| {
+        let coarse = at_once && longest(&preview) < ENOUGH;
+        Some(Small { jpeg: upright(preview)?.into(), coarse })
+    };
+    // The samples need not be read for a picture before them. A smaller one may stand behind them: decoding this one must
+    // not cost more than reading them.
+    let fits = |preview: &Preview| (enough..=3 * LONGEST).contains(&longest(preview));
+    let start = place.read_start(START).map_err(unusable)?;
+    if let Some(small) = embedded(&start, enough).filter(fits).and_then(small) {
+        return Ok(small);
+    }
+    let bytes = place.read().map_err(unusable)?;
+    match embedded(&bytes, enough).and_then(small) {
+        Some(small) => Ok(small),
+        None => Ok(Small { jpeg: developed(&bytes, place, store)?.into(), coarse: false }),
+    }
+}
+
+/// The smallest embedded picture whose longest side has `enough` pixels.
+fn embedded(bytes: &[u8], enough: u32) -> Option<Preview> {
+    darkroot_raw::preview_to_show(bytes, enough).ok()?
+}
+
+/// The longest side of an embedded picture as stored.
+fn longest(preview: &Preview) -> u32 {
+    u32::try_from(preview.size.width.max(preview.size.height)).unwrap_or(u32::MAX)
+}
+
+/// An embedded picture upright and no larger than it must be; `None` where it is not sound.
+fn upright(preview: Preview) -> Option<Vec<u8>> {
+    let fits = longest(&preview) <= LONGEST;
     if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
-        return Some((preview.jpeg, longest));
+        return Some(preview.jpeg);
     }
     let mut reader = image::ImageReader::new(std::io::Cursor::new(&preview.jpeg));
     reader.set_format(image::ImageFormat::Jpeg);
@@ -102,13 +129,13 @@ fn embedded(bytes: &[u8], enough: u32) -> Option<(Vec<u8>, usize)> {
     limits.max_image_height = Some(20_000);
     reader.limits(limits);
     let picture = reader.decode().ok()?;
-    // Fast and coarse to twice the size, then carefully.
-    let picture = if picture.width().max(picture.height()) > 4 * LONGEST {
-        picture.thumbnail(2 * LONGEST, 2 * LONGEST)
-    } else {
-        picture
+    let picture = match picture.width().max(picture.height()) {
+        ..=LONGEST => picture,
+        // Means of whole pixels are enough where there are many of them.
+        side if side >= 2 * LONGEST => picture.thumbnail(LONGEST, LONGEST),
+        _ => picture.resize(LONGEST, LONGEST, FilterType::Triangle),
     };
-    let picture = picture.resize(LONGEST, LONGEST, FilterType::Triangle).into_rgb8();
+    let picture = picture.into_rgb8();
     let stored = Size { width: picture.width() as usize, height: picture.height() as usize };
     let size = preview.orientation.applied_to(stored);
     let mut samples = vec![0; 3 * size.area()];
@@ -118,7 +145,7 @@ fn embedded(bytes: &[u8], enough: u32) -> Option<(Vec<u8>, usize)> {
         samples[at..at + 3].copy_from_slice(&pixel.0);
     }
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
-    Some((screen::bytes(&picture, Sent::Jpeg, false).ok()?.0, longest))
+    Some(screen::bytes(&picture, Sent::Jpeg, false).ok()?.0)
 }
 
 /// What the engine makes of it with the defaults.

@@ -210,6 +210,7 @@ pub(crate) async fn frame(
         let all = uncropped(settings.clone(), true);
         let mut canvas = all.clone();
         canvas.recipe.geometry.straighten = 0.0;
+        canvas.recipe.geometry.auto_straighten = false;
         canvas.recipe.geometry.perspective = None;
         let (canvas, shown) = (size(&canvas)?, size(&all)?);
         let middle = |inner: Size| {
