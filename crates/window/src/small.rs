@@ -9,6 +9,7 @@ use darkroot_colour::RgbSpace;
 use darkroot_photo::{Orientation, Picture, PictureSpace, Samples, Size};
 use darkroot_raw::Preview;
 use image::imageops::FilterType;
+use image::{DynamicImage, RgbImage};
 
 use crate::fault::Fault;
 use crate::roots::Place;
@@ -122,14 +123,10 @@ fn upright(preview: Preview) -> Option<Vec<u8>> {
     if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
         return Some(preview.jpeg);
     }
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(&preview.jpeg));
-    reader.set_format(image::ImageFormat::Jpeg);
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(20_000);
-    limits.max_image_height = Some(20_000);
-    reader.limits(limits);
-    let picture = reader.decode().ok()?;
-    let picture = match picture.width().max(picture.height()) {
+    let (stored, rgb) = darkroot_raw::preview_pixels(&preview.jpeg, &Limits::default()).ok()?;
+    let (width, height) = (u32::try_from(stored.width).ok()?, u32::try_from(stored.height).ok()?);
+    let picture = DynamicImage::ImageRgb8(RgbImage::from_raw(width, height, rgb)?);
+    let picture = match width.max(height) {
         ..=LONGEST => picture,
         // Means of whole pixels are enough where there are many of them.
         side if side >= 2 * LONGEST => picture.thumbnail(LONGEST, LONGEST),
