@@ -6,7 +6,7 @@ import { Layer } from "./layer.js";
 /** Up to this zoom the whole picture is rendered at half its size. */
 const HALF = 0.5;
 /** While something moves that must show noise as it is, a picture of this share of the screen's pixels is enough. */
-const NOISELESS = 0.62;
+const NOISELESS = 0.5;
 const LARGEST_ZOOM = 8;
 
 /**
