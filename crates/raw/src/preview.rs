@@ -9,9 +9,11 @@ use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use crate::screen::Container;
 use crate::elsewhere::{Answer, Question};
-use crate::{Damage, Error, Limits, TooLarge, elsewhere, exif, flash, guarded, jpeg_frame, nikon_note, screen};
+use crate::screen::Container;
+use crate::{
+    Damage, Error, Limits, TooLarge, elsewhere, exif, flash, guarded, jpeg_frame, nikon_note, screen,
+};
 
 /// An embedded JPEG.
 #[derive(Debug, Clone, PartialEq, Eq)]

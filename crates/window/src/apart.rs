@@ -61,8 +61,9 @@ impl Place for Apart {
         let shares = !matches!(question, Question::Samples(_));
         let idle = if shares { locked(&self.idle).pop() } else { None };
         let started = idle.map_or_else(|| self.start(), Ok);
-        let mut decoder = started
-            .map_err(|e| Error::Elsewhere { words: format!("no process can be started to decode it: {e}") })?;
+        let mut decoder = started.map_err(|e| Error::Elsewhere {
+            words: format!("no process can be started to decode it: {e}"),
+        })?;
         let answered = decoder.ask(question, bytes, limits);
         decoder.left -= 1;
         let mut idle = locked(&self.idle);

@@ -34,7 +34,10 @@ pub(crate) enum Told {
     /// The body has its samples.
     Capture(Box<Capture>),
     /// The body is the JPEG.
-    Preview { size: Size, orientation: Orientation },
+    Preview {
+        size: Size,
+        orientation: Orientation,
+    },
     /// The body has red, green and blue of each pixel.
     Pixels(Size),
     Nothing,
