@@ -8,8 +8,6 @@ use darkroot_batch::facts::modified;
 use darkroot_colour::RgbSpace;
 use darkroot_photo::{Orientation, Picture, PictureSpace, Samples, Size};
 use darkroot_raw::Preview;
-use image::imageops::FilterType;
-use image::{DynamicImage, RgbImage};
 
 use crate::fault::Fault;
 use crate::roots::Place;
@@ -124,25 +122,39 @@ fn upright(preview: Preview) -> Option<Vec<u8>> {
         return Some(preview.jpeg);
     }
     let (stored, rgb) = darkroot_raw::preview_pixels(&preview.jpeg, &Limits::default()).ok()?;
-    let (width, height) = (u32::try_from(stored.width).ok()?, u32::try_from(stored.height).ok()?);
-    let picture = DynamicImage::ImageRgb8(RgbImage::from_raw(width, height, rgb)?);
-    let picture = match width.max(height) {
-        ..=LONGEST => picture,
-        // Means of whole pixels are enough where there are many of them.
-        side if side >= 2 * LONGEST => picture.thumbnail(LONGEST, LONGEST),
-        _ => picture.resize(LONGEST, LONGEST, FilterType::Triangle),
-    };
-    let picture = picture.into_rgb8();
-    let stored = Size { width: picture.width() as usize, height: picture.height() as usize };
+    let (stored, rgb) = smaller(stored, &rgb, stored.width.max(stored.height).div_ceil(LONGEST as usize));
+    if stored.area() == 0 {
+        return None;
+    }
     let size = preview.orientation.applied_to(stored);
     let mut samples = vec![0; 3 * size.area()];
-    for (x, y, pixel) in picture.enumerate_pixels() {
-        let (u, v) = preview.orientation.place(x as usize, y as usize, stored);
+    for (i, pixel) in rgb.chunks_exact(3).enumerate() {
+        let (u, v) = preview.orientation.place(i % stored.width, i / stored.width, stored);
         let at = 3 * (v * size.width + u);
-        samples[at..at + 3].copy_from_slice(&pixel.0);
+        samples[at..at + 3].copy_from_slice(pixel);
     }
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
-    Some(screen::bytes(&picture, Sent::Jpeg, false).ok()?.0)
+    Some(screen::bytes(&picture, Sent::Jpeg, true).ok()?.0)
+}
+
+/// Each pixel the mean of `side` x `side` ones; what is left over at the right and below is left out.
+fn smaller(size: Size, rgb: &[u8], side: usize) -> (Size, Vec<u8>) {
+    let small = Size { width: size.width / side, height: size.height / side };
+    let count = u32::try_from(side * side).unwrap_or(u32::MAX);
+    let mut means = Vec::with_capacity(3 * small.area());
+    let mut sums = vec![0u32; 3 * small.width];
+    for rows in rgb.chunks_exact(3 * size.width * side).take(small.height) {
+        sums.fill(0);
+        for row in rows.chunks_exact(3 * size.width) {
+            for (sum, pixels) in sums.as_chunks_mut::<3>().0.iter_mut().zip(row.chunks_exact(3 * side)) {
+                for pixel in pixels.as_chunks::<3>().0 {
+                    (0..3).for_each(|c| sum[c] += u32::from(pixel[c]));
+                }
+            }
+        }
+        means.extend(sums.iter().map(|sum| ((sum + count / 2) / count) as u8));
+    }
+    (small, means)
 }
 
 /// What the engine makes of it with the defaults.
@@ -156,4 +168,20 @@ fn developed(bytes: &[u8], place: &Place, store: &ProfileStore) -> Result<Vec<u8
     let view = plan.whole(Scale::to_show(plan.size(), ENOUGH as usize));
     let picture = plan.render(view, &Cancel::default()).map_err(|e| fault(e.to_string()))?;
     screen::bytes(&picture, Sent::Jpeg, false).map(|(bytes, _)| bytes).map_err(|e| fault(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smaller_picture_has_the_means_of_whole_blocks() {
+        // Five columns and three rows: the last column and the last row are left over.
+        let red = [10, 20, 0, 4, 9, 30, 40, 0, 4, 9, 1, 1, 1, 1, 1];
+        let rgb: Vec<u8> = red.into_iter().flat_map(|v| [v, 100, 0]).collect();
+        let (size, means) = smaller(Size { width: 5, height: 3 }, &rgb, 2);
+        assert_eq!((size, means), (Size { width: 2, height: 1 }, vec![25, 100, 0, 2, 100, 0]));
+        let same = smaller(Size { width: 5, height: 3 }, &rgb, 1);
+        assert_eq!(same, (Size { width: 5, height: 3 }, rgb));
+    }
 }
