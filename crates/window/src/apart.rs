@@ -16,8 +16,8 @@ use darkroot_raw::{Error, Preview};
 use crate::decoder::{Order, Reply, Told, read_body, read_head, read_length, send};
 use crate::state::locked;
 
-/// Processes that wait for the next question about heads and embedded pictures, at most.
-const IDLE: usize = 2;
+/// Processes that wait for the next question about heads and embedded pictures, at most: a browser asks for six at once.
+const IDLE: usize = 6;
 /// Questions that one of them answers.
 const QUESTIONS: u32 = 200;
 /// Time for one answer.
