@@ -26,6 +26,26 @@ def test_a_region_is_that_part_of_the_whole_bit_for_bit(nef):
     assert quarter.shape[:2] == tuple(-(-side // 4) for side in whole.shape[:2])
 
 
+def test_a_view_that_is_developed_again_is_what_it_is_alone(nef):
+    # Exposure and look begin from what is kept of the view; balance, scale and region do not.
+    photo = darkroot.open(nef)
+    asked = [
+        {},
+        {"exposure": 0.7},
+        {"exposure": 0.7, "look": "vivid", "space": "display-p3"},
+        {"exposure": 0.7, "white_balance": "daylight"},
+        {"exposure": -1, "white_balance": "daylight"},
+        {"exposure": -1, "scale": 1 / 2},
+        {"saturation": 1.2, "scale": 1 / 2},
+        {"saturation": 1.2, "region": (10, 20, 50, 40)},
+        {"contrast": 0.2, "region": (11, 20, 50, 40)},
+    ]
+    for one in asked:
+        again = photo.develop(dtype="uint16", **one)
+        with darkroot.open(nef) as alone:
+            assert numpy.array_equal(again, alone.develop(dtype="uint16", **one)), one
+
+
 def test_the_linear_look_is_proportional_to_light(nef):
     photo = darkroot.open(nef)
     one = photo.develop(look="linear", highlights="keep")

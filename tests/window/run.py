@@ -28,8 +28,9 @@ def main():
     import batches
     import charts
     import develop
+    import straighten
 
-    files = [develop, charts, batches, attacks]
+    files = [develop, straighten, charts, batches, attacks]
     tests = [(name, test) for file in files for name, test in vars(file).items() if name.startswith("test_")]
     tests = [(name, test) for name, test in tests if not words or any(word in name for word in words)]
     failed = 0

@@ -59,7 +59,7 @@ pub mod settings_by_file;
 
 pub mod crew_options;
 mod need;
-mod process_limits;
+pub mod process_limits;
 mod raw_head;
 mod task;
 mod thumbnail;

@@ -1,11 +1,11 @@
-//! What a worker process asks of the system, where the system has it.
+//! What a process that meets hostile files asks of the system, where the system has it.
 
 /// What a task may take beyond what it said: estimates are not exact, and memory of the last one may linger.
 #[cfg(target_os = "linux")]
 const SLACK: u64 = 256 << 20;
 
 /// The worker ends with its parent, however that ends, and is the first to go when memory runs out.
-pub(crate) fn prepare() {
+pub fn prepare() {
     #[cfg(target_os = "linux")]
     {
         // Without these the worker still ends when its stdin does.
@@ -15,7 +15,7 @@ pub(crate) fn prepare() {
 }
 
 /// No more memory than twice what was said: a decoder that is led astray fails here, not the machine.
-pub(crate) fn limit_memory(bytes: u64) {
+pub fn limit_memory(bytes: u64) {
     #[cfg(target_os = "linux")]
     set(Some(2 * bytes + SLACK));
     #[cfg(not(target_os = "linux"))]

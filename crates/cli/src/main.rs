@@ -6,6 +6,7 @@
 mod batch;
 mod chart;
 mod deadline;
+mod decoder;
 mod develop;
 mod evaluate;
 mod hint;
@@ -102,6 +103,7 @@ enum Command {
     Completions(shell::Completions),
     Man(shell::Man),
     Worker(batch::Worker),
+    Decoder(decoder::Decoder),
 }
 
 /// Exit code when some file failed.
@@ -130,6 +132,7 @@ fn main() -> ExitCode {
             | Command::Chart(_)
             | Command::Verify(_)
             | Command::Worker(_)
+            | Command::Decoder(_)
     );
     if !is_confined {
         common.start_threads();
@@ -148,6 +151,7 @@ fn main() -> ExitCode {
         Command::Completions(command) => command.run(),
         Command::Man(command) => command.run(),
         Command::Worker(command) => command.run(),
+        Command::Decoder(command) => command.run(),
     };
     let outcome = outcome.and_then(|outcome| {
         out::finish()?;

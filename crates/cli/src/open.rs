@@ -9,8 +9,10 @@ use anyhow::{Context, Result};
 use clap::Args;
 use darkroot::ProfileStore;
 use darkroot_batch::{CrewOptions, system};
-use darkroot_window::{Options, Window};
+use darkroot_raw::elsewhere::decode_at;
+use darkroot_window::{Apart, Options, Window};
 
+use crate::sandbox::Sandbox;
 use crate::{Common, Outcome};
 
 /// Look at photographs in the browser: contact sheet, developing, charts, batches
@@ -34,13 +36,23 @@ pub(crate) struct Open {
     /// Address to listen on; others than 127.0.0.1 can be reached by other machines, unencrypted
     #[arg(long, value_name = "ADDRESS", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     listen: IpAddr,
+
+    #[command(flatten)]
+    sandbox: Sandbox,
 }
 
 impl Open {
     pub(crate) fn run(self, common: Common) -> Result<Outcome> {
         let program = std::env::current_exe().context("this program cannot find itself to start workers")?;
         let threads = common.threads.unwrap_or_else(system::threads).max(1);
-        let crew = CrewOptions { jobs: threads, threads, ..CrewOptions::new(program, vec!["worker".into()]) };
+        let mut worker = vec!["worker".into()];
+        self.sandbox.say(common);
+        if self.sandbox.is_on() {
+            decode_at(Apart::new(program.clone(), vec!["decoder".into()]));
+        } else {
+            worker.push("--no-sandbox".into());
+        }
+        let crew = CrewOptions { jobs: threads, threads, ..CrewOptions::new(program, worker) };
         let store = ProfileStore::of_user();
         for fault in &store.faults {
             crate::say(format_args!("warning: {fault}; it is not used"));

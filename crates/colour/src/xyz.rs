@@ -1,5 +1,7 @@
 //! Tristimulus values, chromaticities and CIELAB.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Vector3;
 
 /// CIE 1931 tristimulus values, relative: Y = 1 is the white.
@@ -14,7 +16,7 @@ pub struct Xyz {
 }
 
 /// CIE 1931 chromaticity coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Xy {
     /// x = X / (X + Y + Z).
     pub x: f64,

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use darkroot_colour::{Matrix3, Xy};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     BlackLevel, Correction, Counts, LocalToneMap, MakerLens, Metadata, Orientation, Rect, WhiteLevel,
 };
 
 /// Which camera took the picture.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Camera {
     /// Maker as written in the file; may be empty.
     pub make: String,
@@ -34,7 +35,7 @@ impl Camera {
 }
 
 /// What the file says of the white of the light.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum AsShot {
     /// Camera RGB of a neutral surface, largest value not more than 1 by custom (DNG AsShotNeutral; the
     /// reciprocal of multipliers).
@@ -44,7 +45,7 @@ pub enum AsShot {
 }
 
 /// The maker's colour calibration for one light.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Correlated colour temperature of the light, K; `None` when the file names no light.
     pub kelvin: Option<f64>,
@@ -57,7 +58,7 @@ pub struct Calibration {
 }
 
 /// How the file was stored and who decoded it.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     /// Container, "NEF", "DNG", ...
     pub format: String,
@@ -70,7 +71,7 @@ pub struct Source {
 }
 
 /// One exposure as decoded. Rectangles and black levels count from the first stored sample.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Capture {
     /// The camera.
     pub camera: Camera,
@@ -127,6 +128,20 @@ impl Capture {
     /// What is shown where nobody asks for another part.
     pub fn shown(&self) -> Rect {
         self.user_crop.unwrap_or(self.default_crop)
+    }
+
+    /// Whether its parts fit together: counts, rectangles in the frame, black levels. Of what comes from another process that is not to be taken for granted.
+    pub fn is_sound(&self) -> bool {
+        let within = |inner: Rect, outer: Rect| inner.intersection(outer) == Some(inner);
+        let whole = Rect::full(self.counts.size());
+        let black = &self.black;
+        let block = black.columns.checked_mul(black.rows).and_then(|block| block.checked_mul(black.planes));
+        self.counts.is_sound()
+            && within(self.active_area, whole)
+            && within(self.default_crop, self.active_area)
+            && self.user_crop.is_none_or(|crop| within(crop, self.default_crop))
+            && block.is_some_and(|block| block > 0 && block == black.values.len())
+            && self.local_tone.as_ref().is_none_or(|map| map.is_sound())
     }
 
     /// A capture of which nothing is known but its samples: all of the frame is shown as it stands, black is 0 and white

@@ -1,9 +1,11 @@
 //! Corrections that a DNG asks its reader to make (DNG 1.7, chapter 7, "Opcode List Processing").
 
+use serde::{Deserialize, Serialize};
+
 use crate::Rect;
 
 /// The samples that a correction is for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Area {
     /// Rectangle, in pixels from the top left corner of the active area.
     pub rect: Rect,
@@ -18,7 +20,7 @@ pub struct Area {
 }
 
 /// One correction, in the order of the list that holds it. Values are linear: 0 = black, 1 = saturated.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Correction {
     /// Opcode 7, MapTable: stored value (0..=65535) -> table entry; the last entry serves all beyond it.
     Table(Area, Vec<u16>),
@@ -41,7 +43,7 @@ pub enum Correction {
 }
 
 /// A coarse map of gains over the picture.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GainMap {
     /// Rows of the map.
     pub rows: usize,
@@ -58,7 +60,7 @@ pub struct GainMap {
 }
 
 /// Gain 1 + k0 r^2 + k1 r^4 + ... + k4 r^10, r = distance from the centre over that of the farthest corner.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Vignette {
     /// k0..k4.
     pub coefficients: [f64; 5],
@@ -67,7 +69,7 @@ pub struct Vignette {
 }
 
 /// How a lens draws straight lines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Projection {
     /// Straight, but for its distortion.
     Rectilinear,
@@ -78,7 +80,7 @@ pub enum Projection {
 }
 
 /// What a lens does to the points of one plane. Radii are distances from the centre over that of the farthest corner.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Distortion {
     /// By powers from 0 to 14 of the radius (of the angle, for a fisheye): their sum is the factor on a point's radius.
     pub radial: [f64; 15],
@@ -98,7 +100,7 @@ impl From<[f64; 6]> for Distortion {
 }
 
 /// Where each point of the corrected picture comes from, by plane.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Warp {
     /// What lens the coefficients are for.
     pub projection: Projection,

@@ -1,7 +1,9 @@
 //! Sizes, rectangles and orientations, in pixels.
 
+use serde::{Deserialize, Serialize};
+
 /// Width and height of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Size {
     /// Pixels in a row.
     pub width: usize,
@@ -22,7 +24,7 @@ impl Size {
 }
 
 /// A rectangle of pixels; the origin is the top left corner of the picture it lies in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rect {
     /// First column.
     pub x: usize,
@@ -69,7 +71,7 @@ impl Rect {
 }
 
 /// How the stored picture must be turned to stand upright (Exif 2.32, tag 0x0112).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Orientation {
     /// 1: as stored.
     #[default]

@@ -1,8 +1,10 @@
 //! Black and white level: which stored numbers mean no light and saturation.
 
+use serde::{Deserialize, Serialize};
+
 /// Stored value of no light. It repeats over a small block of pixels and may drift by row and column
 /// (DNG 1.7, BlackLevel, BlackLevelRepeatDim, BlackLevelDeltaV and H). Anchored at the first stored sample.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BlackLevel {
     /// Columns of the repeating block, at least 1.
     pub columns: usize,
@@ -46,5 +48,5 @@ impl BlackLevel {
 }
 
 /// Stored value at which a sample is saturated, for red, green and blue (all three the same for monochrome).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WhiteLevel(pub [f32; 3]);

@@ -1,7 +1,9 @@
 //! A local tone map as its writer stored it: what a phone's own rendering does to each part of the picture.
 
+use serde::{Deserialize, Serialize};
+
 /// Gains that depend on the place and on the light there (DNG ProfileGainTableMap and ProfileGainTableMap2).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalToneMap {
     /// Tables along the height and the width of the active area; at least 1.
     pub points: [usize; 2],

@@ -1,7 +1,9 @@
 //! What the camera wrote about the shot, as Exif fields.
 
+use serde::{Deserialize, Serialize};
+
 /// The directory that a field belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Directory {
     /// Primary image (IFD0): make, model, artist, copyright, ...
     Image,
@@ -12,7 +14,7 @@ pub enum Directory {
 }
 
 /// Value of a field, in the types of Exif 2.32.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Value {
     /// Text (Exif ASCII; UTF-8 is kept as it is), without the closing zero.
     Text(String),
@@ -31,7 +33,7 @@ pub enum Value {
 }
 
 /// One Exif field.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Directory it belongs to.
     pub directory: Directory,
@@ -42,7 +44,7 @@ pub struct Field {
 }
 
 /// Exif fields of a shot, each tag of a directory at most once, sorted.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Metadata {
     fields: Vec<Field>,
 }

@@ -1,9 +1,11 @@
 //! Samples as the sensor gives them.
 
+use serde::{Deserialize, Serialize};
+
 use crate::Size;
 
 /// Colour of one filter of a colour filter array.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Filter {
     /// Red; plane 0.
     Red,
@@ -38,7 +40,7 @@ impl Filter {
 }
 
 /// A repeating colour filter array; its first filter lies over the first stored sample.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cfa {
     width: usize,
     height: usize,
@@ -139,7 +141,7 @@ impl std::fmt::Display for Cfa {
 }
 
 /// What the samples of a mosaic stand for.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Layout {
     /// One sample a pixel, under a colour filter array.
     Cfa(Cfa),
@@ -160,7 +162,7 @@ impl Layout {
 }
 
 /// A frame of sensor samples, row by row, including any masked border.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mosaic<T> {
     /// Size in pixels.
     pub size: Size,
@@ -171,7 +173,7 @@ pub struct Mosaic<T> {
 }
 
 /// Samples as decoded, before black level and white level.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Counts {
     /// Integer counts (nearly every file).
     U16(Mosaic<u16>),
@@ -194,6 +196,25 @@ impl Counts {
             Self::U16(m) => &m.layout,
             Self::F32(m) => &m.layout,
         }
+    }
+
+    /// Number of samples that are there: none in what was read of a header alone.
+    pub fn samples(&self) -> usize {
+        match self {
+            Self::U16(m) => m.samples.len(),
+            Self::F32(m) => m.samples.len(),
+        }
+    }
+
+    /// Whether there are as many samples as the size and the layout ask for, or none, and the layout is one.
+    pub fn is_sound(&self) -> bool {
+        let size = self.size();
+        let whole = size.width.checked_mul(size.height).and_then(|n| n.checked_mul(self.layout().planes()));
+        let is_layout = match self.layout() {
+            Layout::Cfa(cfa) => Cfa::new(cfa.width, cfa.filters.clone()).is_some(),
+            Layout::Monochrome | Layout::Rgb => true,
+        };
+        is_layout && whole.is_some_and(|whole| [0, whole].contains(&self.samples()))
     }
 }
 

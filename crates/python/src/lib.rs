@@ -14,6 +14,8 @@ mod fault;
 mod files;
 mod fit;
 mod json;
+mod opened;
+mod order;
 mod photo;
 mod picture;
 mod profile;

@@ -1,57 +1,23 @@
 //! A photograph in memory.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use darkroot::settings::Engine;
-use darkroot::{Analysis, Cancel as Wish, Decoder, Format, Photo as Core, Plan, Scale, Settings, View};
-use darkroot_develop::{Bits, Look, OutputSpace};
-use darkroot_photo::{Layout, Picture, Rect};
-use numpy::{PyArray1, PyArrayDescr, PyArrayDescrMethods, PyArrayMethods, dtype};
+use darkroot::{Decoder, Photo as Core, Settings};
+use darkroot_photo::{Layout, Rect};
+use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::cancel::{Cancel, given};
 use crate::fault::{Class, IntoException, OrException};
 use crate::files::file;
+use crate::opened::{Open, Source};
+use crate::order::{Order, for_array, scale_of};
 use crate::run::run;
 use crate::samples::Samples;
 use crate::settings::{Asked, limits};
 use crate::{json, picture, store};
-
-/// Where the bytes are from, for what is read later.
-#[derive(Clone)]
-enum Source {
-    File(PathBuf),
-    Memory(Arc<PyBackedBytes>),
-}
-
-impl Source {
-    /// Does something with the bytes of the file.
-    fn with<T>(&self, work: impl FnOnce(&[u8]) -> T) -> Result<T, darkroot::Error> {
-        match self {
-            Self::File(path) => darkroot::files::read(path).map(|bytes| work(&bytes)),
-            Self::Memory(bytes) => Ok(work(bytes)),
-        }
-    }
-}
-
-/// What is open.
-struct Open {
-    photo: Core,
-    /// What the frame shows; looked for when it is first wanted, and kept.
-    analysis: OnceLock<Analysis>,
-    /// What the photograph is called in messages.
-    name: PathBuf,
-    source: Source,
-}
-
-impl Open {
-    fn analysis(&self) -> &Analysis {
-        self.analysis.get_or_init(|| self.photo.analyse_as_asked())
-    }
-}
 
 /// A decoded raw file. :class:`darkroot.Photo` says more.
 #[pyclass(module = "darkroot._core", frozen, subclass)]
@@ -62,14 +28,6 @@ impl Photo {
         let open = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         open.clone().ok_or_else(|| Class::Settings.says("the photo is closed; open the file again"))
     }
-}
-
-/// What is asked of one picture.
-struct Order {
-    settings: Settings,
-    store: Arc<darkroot::ProfileStore>,
-    scale: Scale,
-    region: Option<(usize, usize, usize, usize)>,
 }
 
 #[pymethods]
@@ -98,7 +56,7 @@ impl Photo {
             let decoded = source.with(|bytes| Core::open_with(bytes, decoder, &limits()))?;
             let photo =
                 decoded.map_err(|fault| darkroot::Error::Raw { path: name.clone(), source: fault })?;
-            Ok::<_, darkroot::Error>(Open { photo, analysis: OnceLock::new(), name, source })
+            Ok::<_, darkroot::Error>(Open::new(photo, name, source))
         })?;
         Ok(Self(Mutex::new(Some(Arc::new(opened.or_exception()?)))))
     }
@@ -237,7 +195,7 @@ impl Photo {
         let settings = for_array(asked.for_photo()?, dtype)?;
         let order = Order { settings, store: asked.store(), scale: scale_of(scale)?, region };
         let open = self.open()?;
-        let made = run(py, threads, &given(cancel), move |wish| render(&open, &order, wish))?;
+        let made = run(py, threads, &given(cancel), move |wish| order.render(&open, wish))?;
         picture::array(py, made?)
     }
 
@@ -254,7 +212,7 @@ impl Photo {
         let (settings, store) = (for_array(asked.for_photo()?, None)?, asked.store());
         let open = self.open()?;
         let told = run(py, threads, &Arc::default(), move |_| {
-            let plan = plan(&open, &settings, &store)?;
+            let plan = open.plan(&settings, &store)?;
             let chosen = open.photo.profile(&store, &settings).map_err(|fault| fault.exception())?;
             let colours = darkroot::job::colours(&plan, open.photo.capture(), chosen.as_ref());
             Ok::<_, PyErr>(serde_json::json!({
@@ -280,78 +238,4 @@ fn decoder_of(name: &str) -> PyResult<Decoder> {
         .map_err(|wrong| darkroot::RecipeError::Flag { key, wrong })
         .or_exception()?;
     Ok(settings.decoder)
-}
-
-fn scale_of(scale: f64) -> PyResult<Scale> {
-    let fits = |halvings: &u8| (scale * f64::from(1u32 << halvings) - 1.0).abs() < 1e-9;
-    (0..=6).find(fits).and_then(Scale::halved).ok_or_else(|| {
-        Class::Settings.says(format!("`scale` cannot be {scale}; it is 1, 1/2, 1/4, 1/8, 1/16, 1/32 or 1/64"))
-    })
-}
-
-/// Settings of a picture that goes into an array, which can have every space and every number of bits.
-fn for_array(mut settings: Settings, wanted: Option<&Bound<'_, PyAny>>) -> PyResult<Settings> {
-    if settings.engine != Engine::Darkroot {
-        return Err(Class::Settings.says("`engine` goes with files: give it to `develop_file`"));
-    }
-    settings.format = Some(Format::Tiff);
-    let measured = settings.recipe.look == Look::Linear || settings.space == Some(OutputSpace::Camera);
-    let asked = wanted.map(bits_of).transpose()?;
-    if let (Some(asked), Some(said)) = (asked, settings.bits)
-        && asked != said
-    {
-        let words =
-            format!("`dtype` and `bits` ask for {} and {} bits; leave one out", asked.count(), said.count());
-        return Err(Class::Settings.says(words));
-    }
-    let usual = if measured { Bits::Float } else { Bits::Eight };
-    settings.bits = Some(asked.or(settings.bits).unwrap_or(usual));
-    Ok(settings)
-}
-
-fn bits_of(wanted: &Bound<'_, PyAny>) -> PyResult<Bits> {
-    let py = wanted.py();
-    let wanted = PyArrayDescr::new(py, wanted.clone())?;
-    let is = |known: Bound<'_, PyArrayDescr>| wanted.is_equiv_to(&known);
-    if is(dtype::<u8>(py)) {
-        Ok(Bits::Eight)
-    } else if is(dtype::<u16>(py)) {
-        Ok(Bits::Sixteen)
-    } else if is(dtype::<f32>(py)) {
-        Ok(Bits::Float)
-    } else {
-        Err(Class::Settings.says(format!("`dtype` cannot be {wanted}; it is uint8, uint16 or float32")))
-    }
-}
-
-fn plan(open: &Open, settings: &Settings, store: &darkroot::ProfileStore) -> PyResult<Plan> {
-    let mut photo = open.photo.clone();
-    if settings.recipe.look == Look::Camera {
-        photo = open.source.with(|bytes| photo.with_preview(bytes, &limits())).or_exception()?;
-    }
-    if settings.dark.is_none() && settings.flat.is_none() {
-        return photo.plan(open.analysis(), store, settings).or_exception();
-    }
-    let photo = photo.with_frames(settings).or_exception()?;
-    photo.plan(&photo.analyse_as_asked(), store, settings).or_exception()
-}
-
-fn render(open: &Open, order: &Order, wish: &Wish) -> PyResult<Picture> {
-    let plan = plan(open, &order.settings, &order.store)?;
-    let mut view = plan.whole(order.scale);
-    if let Some((x, y, width, height)) = order.region {
-        let whole = view.rect;
-        let rect = Rect { x, y, width, height };
-        let inside = x.checked_add(width).is_some_and(|right| right <= whole.width)
-            && y.checked_add(height).is_some_and(|bottom| bottom <= whole.height);
-        if !inside || width == 0 || height == 0 {
-            let words = format!(
-                "`region` ({x}, {y}, {width}, {height}) does not lie in the picture, which has {} x {} pixels at this scale",
-                whole.width, whole.height
-            );
-            return Err(Class::Settings.says(words));
-        }
-        view = View { scale: order.scale, rect };
-    }
-    plan.render(view, wish).or_exception()
 }

@@ -59,6 +59,12 @@ pub enum Error {
         /// The decoder that failed.
         decoder: &'static str,
     },
+    /// What a decoder in another process says of the file ([`crate::elsewhere`]), or how that process ended.
+    #[error("{words}")]
+    Elsewhere {
+        /// The sentence.
+        words: String,
+    },
 }
 
 /// What is damaged in a file.

@@ -10,17 +10,21 @@
 
 use darkroot_photo::Capture;
 
+use elsewhere::Question;
+
 pub mod cameras;
 pub use cameras::{Listed, cameras, is_listed};
 
 pub mod error;
 pub use error::{Damage, Error, TooLarge, Unknown};
 
+pub mod elsewhere;
+
 pub mod limits;
 pub use limits::Limits;
 
 pub mod preview;
-pub use preview::{Preview, decode_preview, preview, preview_to_show};
+pub use preview::{Preview, decode_preview, preview, preview_pixels, preview_to_show};
 
 pub mod samples;
 pub use samples::samples_hash;
@@ -49,7 +53,7 @@ mod opcode_work;
 mod opcodes;
 
 /// Which library decodes the samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Decoder {
     /// flashraw: every current format, exact on all known-truth fixtures.
     #[default]
@@ -67,6 +71,9 @@ pub enum Decoder {
 /// # Errors
 /// Anything wrong with the file, as one [`Error`] that says what and what to do. Never panics for input.
 pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture, Error> {
+    if let Some(place) = elsewhere::place() {
+        return elsewhere::capture(place, Question::Samples(decoder), bytes, limits);
+    }
     let container = screen::screen(bytes, limits)?;
     container.tiff.as_ref().map_or(Ok(()), nikon_note::refuse_high_efficiency)?;
     match decoder {
@@ -91,6 +98,9 @@ pub fn decode(bytes: &[u8], decoder: Decoder, limits: &Limits) -> Result<Capture
 /// # Errors
 /// As [`decode`].
 pub fn header(bytes: &[u8], limits: &Limits) -> Result<Capture, Error> {
+    if let Some(place) = elsewhere::place() {
+        return elsewhere::capture(place, Question::Header, bytes, limits);
+    }
     let container = screen::screen(bytes, limits)?;
     guarded("flashraw", || flash::header(bytes, &container, limits))
 }

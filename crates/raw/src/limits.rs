@@ -1,7 +1,7 @@
 //! How much a file may ask for.
 
 /// Bounds on what decoding one file may allocate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Limits {
     /// Largest number of samples (width x height x samples a pixel). A sample takes two bytes, four in
     /// floating-point files.

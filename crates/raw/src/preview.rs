@@ -9,8 +9,11 @@ use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
+use crate::elsewhere::{Answer, Question};
 use crate::screen::Container;
-use crate::{Damage, Error, Limits, TooLarge, exif, flash, guarded, jpeg_frame, nikon_note, screen};
+use crate::{
+    Damage, Error, Limits, TooLarge, elsewhere, exif, flash, guarded, jpeg_frame, nikon_note, screen,
+};
 
 /// An embedded JPEG.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,6 +39,13 @@ pub fn preview(bytes: &[u8]) -> Result<Option<Preview>, Error> {
 /// # Errors
 /// As [`preview`].
 pub fn preview_to_show(bytes: &[u8], longest: u32) -> Result<Option<Preview>, Error> {
+    if let Some(place) = elsewhere::place() {
+        return match place.ask(Question::Preview { longest }, bytes, &Limits::default())? {
+            Answer::Preview(preview) => Ok(Some(preview)),
+            Answer::Nothing => Ok(None),
+            _ => Err(elsewhere::another()),
+        };
+    }
     screen::screen(bytes, &Limits::default())?;
     guarded("flashraw", || {
         let raw = FlashRaw::open(bytes).map_err(|e| crate::flash::error(&e))?;
@@ -64,9 +74,16 @@ pub fn preview_to_show(bytes: &[u8], longest: u32) -> Result<Option<Preview>, Er
 /// # Errors
 /// As [`preview`], [`Error::Damaged`] for a JPEG that cannot be decoded, [`Error::TooLarge`] for one beyond the limits.
 pub fn decode_preview(bytes: &[u8], limits: &Limits) -> Result<Option<Capture>, Error> {
+    if let Some(place) = elsewhere::place() {
+        return match place.ask(Question::DevelopedPreview, bytes, limits)? {
+            Answer::Capture(capture) => Ok(Some(*capture)),
+            Answer::Nothing => Ok(None),
+            _ => Err(elsewhere::another()),
+        };
+    }
     let Some(preview) = preview(bytes)? else { return Ok(None) };
     let container = screen::screen(bytes, limits)?;
-    let (size, rgb) = guarded("zune-jpeg", || pixels(&preview.jpeg, limits))?;
+    let (size, rgb) = preview_pixels(&preview.jpeg, limits)?;
     let (space, is_stated) = colour_space(&container);
     let linear: Vec<u16> =
         (0..=255u8).map(|v| (space.curve.decode(f64::from(v) / 255.0) * 65535.0).round() as u16).collect();
@@ -110,7 +127,20 @@ pub fn decode_preview(bytes: &[u8], limits: &Limits) -> Result<Option<Capture>, 
     }))
 }
 
-/// Size and pixels of a JPEG: red, green and blue of each.
+/// Size and pixels of an embedded JPEG as it is stored: red, green and blue of each, 8 bits, row by row.
+///
+/// # Errors
+/// [`Error::Damaged`] for one that cannot be decoded, [`Error::TooLarge`] for one beyond the limits.
+pub fn preview_pixels(jpeg: &[u8], limits: &Limits) -> Result<(Size, Vec<u8>), Error> {
+    if let Some(place) = elsewhere::place() {
+        return match place.ask(Question::Pixels, jpeg, limits)? {
+            Answer::Pixels(size, rgb) => Ok((size, rgb)),
+            _ => Err(elsewhere::another()),
+        };
+    }
+    guarded("zune-jpeg", || pixels(jpeg, limits))
+}
+
 fn pixels(jpeg: &[u8], limits: &Limits) -> Result<(Size, Vec<u8>), Error> {
     let samples = jpeg_frame::most_samples(jpeg).unwrap_or(u64::MAX);
     if samples > limits.max_samples {

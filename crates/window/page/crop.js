@@ -1,32 +1,26 @@
 // The crop and the straightening, chosen on the picture: a rectangle with handles; dragging outside of it turns the picture.
 
-import { post } from "./server.js";
 import { h, svg } from "./elements.js";
+import { ARROWS, Tool } from "./tool.js";
 
 const HANDLES = [[0, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0.5, 1], [0, 1], [0, 0.5]];
 /** The smallest side of a crop, pixels of the picture. */
 const LEAST = 16;
 const RATIOS = ["free", "3:2", "4:3", "5:4", "1:1", "16:9"];
 
-/** Takes the stage until it ends; `done(changes)` gets what was chosen, or `null`. */
-export class CropTool {
-  #picture;
-  #draft;
-  #done;
+export class CropTool extends Tool {
   #frame = null;
   /** In pixels of what is shown: left, top, right, bottom. */
   #box = null;
   #ratio = null;
 
   constructor(picture, draft, done) {
-    this.#picture = picture;
-    this.#draft = draft;
-    this.#done = done;
+    super(picture, draft, done, "crop");
     this.shade = svg("path", { class: "shade", "fill-rule": "evenodd" });
     this.edge = svg("rect", { class: "edge" });
     this.thirds = svg("path", { class: "thirds" });
     this.handles = HANDLES.map((_, i) => svg("circle", { class: "handle", r: 7, tabindex: "0", "data-handle": String(i) }));
-    this.overlay = svg("svg", { class: "overlay crop" }, this.shade, this.thirds, this.edge, ...this.handles);
+    this.overlay.append(this.shade, this.thirds, this.edge, ...this.handles);
     this.ratio = h("select", { "aria-label": "Ratio of sides", onchange: () => this.#take(this.ratio.value) }, RATIOS.map((ratio) => h("option", {}, ratio)));
     this.angle = h("output", { class: "angle" });
     this.bar = h("div", { class: "tool-bar", role: "toolbar", "aria-label": "Crop" },
@@ -35,57 +29,51 @@ export class CropTool {
       h("button", { onclick: () => this.#turn(-0.1), "aria-label": "Turn a tenth of a degree anticlockwise" }, "−"),
       h("button", { onclick: () => this.#turn(0.1), "aria-label": "Turn a tenth of a degree clockwise" }, "+"),
       h("button", { onclick: () => this.#whole() }, "Whole picture"),
-      h("button", { onclick: () => this.end(false) }, "Cancel"),
-      h("button", { class: "first", onclick: () => this.end(true) }, "Crop"));
+      h("button", { class: "cancel", onclick: () => this.end(false) }, "Cancel"),
+      h("button", { class: "first", onclick: () => this.end(true) }, "Crop"),
+      this.notice.element);
     this.#wasStraight = draft.edits.straighten ?? null;
-    this.#listener = () => this.#lay();
-    picture.addEventListener("view", this.#listener);
     this.overlay.addEventListener("pointerdown", (event) => this.#press(event));
     this.overlay.addEventListener("keydown", (event) => this.#key(event));
   }
 
-  #listener;
   #wasStraight;
-  #ended = false;
 
   async begin() {
-    this.#picture.busy = true;
-    this.#picture.element.append(this.overlay);
+    super.begin();
     await this.#measure();
   }
 
   /** Where a crop can lie, as the settings are now. */
   async #measure() {
-    const frame = await post("frame", { file: this.#draft.file, edits: this.#draft.edits });
+    const frame = await this.frame(this.draft.edits);
     const [left, top, width, height] = frame.shown;
     const [x, y, w, hgt] = frame.crop;
     this.#frame = frame;
     const box = this.#box ?? [x - left, y - top, x - left + w, y - top + hgt];
     const limit = (v, most) => Math.min(most, Math.max(0, v));
     this.#box = [limit(box[0], width - LEAST), limit(box[1], height - LEAST), limit(box[2], width), limit(box[3], height)];
-    this.#lay();
+    this.lay();
   }
 
-  /** Ends it, with or without what was chosen. */
-  async end(yes) {
-    if (this.#ended) return;
-    this.#ended = true;
+  async chosen() {
     // The picture may have been turned a moment ago.
-    if (yes) await this.#measure().catch(() => {});
-    this.#picture.removeEventListener("view", this.#listener);
-    this.#picture.busy = false;
-    this.overlay.remove();
-    if (!yes || !this.#frame) return this.#done({ straighten: this.#wasStraight });
+    await this.#measure().catch(() => {});
+    if (!this.#frame) return this.undone();
     const [left, top, width, height] = this.#frame.shown;
     const [x0, y0, x1, y1] = this.#box.map(Math.round);
     const isWhole = x0 <= 0 && y0 <= 0 && x1 >= width && y1 >= height;
-    this.#done({ crop: isWhole ? null : `${left + x0},${top + y0},${x1 - x0},${y1 - y0}` });
+    return { crop: isWhole ? null : `${left + x0},${top + y0},${x1 - x0},${y1 - y0}` };
+  }
+
+  undone() {
+    return { straighten: this.#wasStraight };
   }
 
   #whole() {
     const [, , width, height] = this.#frame.shown;
     this.#box = [0, 0, width, height];
-    this.#lay();
+    this.lay();
   }
 
   #take(ratio) {
@@ -102,24 +90,21 @@ export class CropTool {
     const hgt = w / this.#ratio;
     const [cx, cy] = [(x0 + x1) / 2, (y0 + y1) / 2];
     this.#box = [cx - w / 2, cy - hgt / 2, cx + w / 2, cy + hgt / 2];
-    this.#lay();
+    this.lay();
   }
 
   async #turn(by) {
-    const angle = Math.min(45, Math.max(-45, (Number(this.#draft.text("straighten")) || 0) + by));
-    this.#draft.set({ straighten: angle.toFixed(2).replace(/\.?0+$/, "") });
-    this.#lay();
+    const angle = Math.min(45, Math.max(-45, (Number(this.draft.text("straighten")) || 0) + by));
+    this.draft.set({ straighten: angle.toFixed(2).replace(/\.?0+$/, "") });
+    this.lay();
     await this.#measure();
   }
 
-  #lay() {
-    this.angle.textContent = `${(Number(this.#draft.text("straighten")) || 0).toFixed(1)}°`;
+  lay() {
+    this.angle.textContent = `${(Number(this.draft.text("straighten")) || 0).toFixed(1)}°`;
     if (!this.#box) return;
-    const zoom = this.#picture.zoom;
-    const { left, top } = this.#picture.sheet.style;
-    const [ox, oy] = [parseFloat(left), parseFloat(top)];
-    const [x0, y0, x1, y1] = this.#box.map((v, i) => v * zoom + (i % 2 ? oy : ox));
-    const { clientWidth, clientHeight } = this.#picture.element;
+    const [[x0, y0], [x1, y1]] = [this.#box.slice(0, 2), this.#box.slice(2)].map((place) => this.picture.onStage(place));
+    const { clientWidth, clientHeight } = this.picture.element;
     this.shade.setAttribute("d", `M0 0H${clientWidth}V${clientHeight}H0ZM${x0} ${y0}H${x1}V${y1}H${x0}Z`);
     for (const [name, v] of Object.entries({ x: x0, y: y0, width: x1 - x0, height: y1 - y0 })) this.edge.setAttribute(name, v);
     const third = (a, b, i) => a + ((b - a) * i) / 3;
@@ -137,19 +122,19 @@ export class CropTool {
     const handle = event.target.dataset?.handle;
     const start = [event.clientX, event.clientY];
     const box = [...this.#box];
-    const zoom = this.#picture.zoom;
+    const zoom = this.picture.zoom;
     const inside = event.target === this.edge;
-    const area = this.#picture.element.getBoundingClientRect();
+    const area = this.picture.element.getBoundingClientRect();
     const middle = [area.left + area.width / 2, area.top + area.height / 2];
     const direction = (e) => Math.atan2(e.clientY - middle[1], e.clientX - middle[0]);
     const from = direction(event);
-    const angle = (Number(this.#draft.text("straighten")) || 0);
+    const angle = (Number(this.draft.text("straighten")) || 0);
     const move = (e) => {
       const by = [(e.clientX - start[0]) / zoom, (e.clientY - start[1]) / zoom];
       if (handle !== undefined) this.#drag(box, HANDLES[handle], by);
       else if (inside) this.#shift(box, by);
-      else this.#draft.set({ straighten: (Math.max(-45, Math.min(45, angle + ((direction(e) - from) * 180) / Math.PI))).toFixed(1) });
-      this.#lay();
+      else this.draft.set({ straighten: (Math.max(-45, Math.min(45, angle + ((direction(e) - from) * 180) / Math.PI))).toFixed(1) });
+      this.lay();
     };
     const end = () => {
       this.overlay.removeEventListener("pointermove", move);
@@ -189,13 +174,13 @@ export class CropTool {
   }
 
   #key(event) {
-    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    const step = ARROWS[event.key];
     const handle = event.target.dataset?.handle;
     if (!step || handle === undefined) return;
     event.preventDefault();
     event.stopPropagation();
     const far = event.shiftKey ? 50 : 5;
     this.#drag(this.#box, HANDLES[handle], step.map((v) => v * far));
-    this.#lay();
+    this.lay();
   }
 }

@@ -3,17 +3,16 @@
 import { address, post } from "./server.js";
 import { baseName, fill, h, isTyping, newestOnly, Notice, painted, shown } from "./elements.js";
 import { Controls } from "./controls.js";
-import { CropTool } from "./crop.js";
 import { ExportPanel } from "./export.js";
 import { Histogram } from "./histogram.js";
 import { Picture } from "./picture.js";
 import { Readout } from "./readout.js";
+import { Tools } from "./tools.js";
 import { clipboard, draft as draftOf, hasDraft, unsaved } from "./edits.js";
 import { files } from "./files.js";
 
-let root, go, picture, controls, histogram, readout, exports, table;
+let root, go, picture, tools, controls, histogram, readout, exports, table;
 let draft = null;
-let tool = null;
 let about = null;
 const notice = new Notice();
 const saved = new Notice();
@@ -22,10 +21,11 @@ const parts = {};
 /** Settings that say where the picture lies in the frame: what is before the edits lies there, too. */
 const geometry = () => table.filter((one) => one.section === "Geometry").map((one) => one.name);
 
-const asked = () => ({ file: files.current, edits: draft?.edits ?? unsaved(files.current), uncropped: tool instanceof CropTool });
+const asked = () => tools.asked({ file: files.current, edits: draft?.edits ?? unsaved(files.current) });
 const askedBefore = () => {
   const names = new Set(geometry());
-  return { ...asked(), edits: Object.fromEntries(Object.entries(draft?.edits ?? {}).filter(([name]) => names.has(name))) };
+  const now = asked();
+  return { ...now, edits: Object.fromEntries(Object.entries(now.edits ?? {}).filter(([name]) => names.has(name))) };
 };
 
 export async function build(element, routes, described) {
@@ -33,24 +33,27 @@ export async function build(element, routes, described) {
   go = routes;
   table = described;
   picture = new Picture(asked, askedBefore);
+  tools = new Tools(picture, {
+    draft: () => draft,
+    set: (changes) => { draft.set(changes); draft.commit(); },
+    fault,
+  });
   histogram = new Histogram();
-  readout = new Readout(picture, () => (draft && !(tool instanceof CropTool) ? { file: draft.file, edits: draft.edits } : null));
+  readout = new Readout(picture, () => (draft && !tools.holdsPicture ? { file: draft.file, edits: draft.edits } : null));
   exports = new ExportPanel(() => draft);
-  parts.pick = h("button", { title: "Choose a grey spot on the picture (W)", onclick: () => pick(true) }, "Pick grey");
   parts.light = h("span", { class: "told" });
-  parts.crop = h("button", { title: "Choose the crop on the picture (C)", onclick: crop }, "Crop and straighten");
+  const { pick, crop, lines } = tools.buttons;
   controls = new Controls(table, {
     set,
     extra: {
-      "white-balance": h("div", { class: "extra" }, parts.pick, ...["as-shot", "daylight", "auto"].map((text) => h("button", { onclick: () => set("white-balance", text) }, text)), parts.light),
-      crop: h("div", { class: "extra" }, parts.crop),
+      "white-balance": h("div", { class: "extra" }, pick, ...["as-shot", "daylight", "auto"].map((text) => h("button", { onclick: () => set("white-balance", text) }, text)), parts.light),
+      crop: h("div", { class: "extra" }, crop, lines),
     },
   });
   layOut();
   picture.addEventListener("rendered", ({ detail }) => told(detail));
   picture.addEventListener("fault", ({ detail }) => fault(detail));
   picture.addEventListener("view", () => { parts.zoom.textContent = picture.isFitted ? "Fit" : `${Math.round(picture.zoom * devicePixelRatio * 100)} %`; });
-  picture.addEventListener("press", ({ detail }) => pressed(detail));
   document.addEventListener("keydown", key);
   document.addEventListener("keyup", (event) => { if (event.key === "b") picture.hold(false); });
 }
@@ -67,7 +70,6 @@ function layOut() {
   parts.zoom = button("Fit", "Fit (F), or pixel for pixel (Z)", () => (picture.isFitted ? picture.full() : picture.fit()), { class: "zoom" });
   parts.split = button("Before | after", "Before at the left, after at the right (Y); hold B to see before alone", split, { "aria-pressed": "false" });
   parts.strip = h("div", { class: "strip", "aria-label": "Photographs", role: "group" });
-  parts.tool = h("div", { class: "tool-place" });
   parts.notes = h("ul", { class: "notes" });
   parts.empty = h("p", { class: "empty", hidden: true }, "Choose a photograph: double-click it in the contact sheet, or press Enter there.");
   fill(root,
@@ -75,7 +77,7 @@ function layOut() {
       h("div", { class: "middle" },
         h("div", { class: "tools" }, parts.name, parts.facts, h("span", { class: "space" }), parts.split, parts.zoom, button("Export …", "Write the picture (E)", () => draft && exports.open(draft))),
         notice.element,
-        h("div", { class: "stage-frame" }, picture.element, parts.tool, exports.element, parts.empty),
+        h("div", { class: "stage-frame" }, picture.element, tools.place, exports.element, parts.empty),
         parts.strip),
       h("aside", { class: "side", "aria-label": "Settings" },
         histogram.element,
@@ -92,7 +94,7 @@ function layOut() {
 export async function show(file) {
   parts.empty.hidden = Boolean(file ?? draft);
   if (!file) return go.place("develop", draft?.file);
-  endTool();
+  tools.end();
   if (draft?.file === file) {
     picture.update();
     return strip();
@@ -241,58 +243,6 @@ function split() {
   parts.split.setAttribute("aria-pressed", String(picture.isSplit));
 }
 
-function pick(yes) {
-  endTool();
-  tool = yes ? "pick" : null;
-  picture.element.classList.toggle("picking", yes);
-  parts.pick.classList.toggle("on", yes);
-}
-
-async function pressed(event) {
-  const place = picture.at(event);
-  if (tool !== "pick" || !place) return;
-  const [x, y] = place.map(Math.floor);
-  pick(false);
-  try {
-    set("white-balance", await post("balance", { file: draft.file, edits: draft.edits, x, y }));
-  } catch (error) {
-    fault(error);
-  }
-}
-
-async function crop() {
-  if (!draft || tool instanceof CropTool) return;
-  endTool();
-  tool = new CropTool(picture, draft, (changes) => {
-    tool = null;
-    fill(parts.tool);
-    parts.crop.classList.remove("on");
-    picture.reset();
-    draft.set(changes);
-    draft.commit();
-    picture.update();
-  });
-  parts.crop.classList.add("on");
-  fill(parts.tool, tool.bar);
-  picture.reset();
-  await picture.update();
-  try {
-    await tool?.begin?.();
-  } catch (error) {
-    tool?.end(false);
-    fault(error);
-  }
-}
-
-function endTool() {
-  if (tool instanceof CropTool) tool.end(false);
-  else if (tool) {
-    tool = null;
-    picture.element.classList.remove("picking");
-    parts.pick.classList.remove("on");
-  }
-}
-
 function next(by) {
   const all = files.shown.length ? files.shown : files.all;
   const at = all.findIndex((one) => one.file === files.current);
@@ -302,19 +252,16 @@ function next(by) {
 
 function key(event) {
   if (root.hidden || !draft) return;
+  if (tools.key(event)) return event.preventDefault();
   const command = event.ctrlKey || event.metaKey;
   if (command && event.key === "s") save(false);
   else if (command && event.key.toLowerCase() === "z") event.shiftKey ? draft.redo() : draft.undo();
   else if (command && event.key === "y") draft.redo();
   else if (command || event.altKey || isTyping(event)) return;
-  else if (event.key === "Escape" && tool) endTool();
+  else if (tools.holdsPicture) return;
   else if (event.key === "Escape") go.sheet();
-  else if (event.key === "Enter" && tool instanceof CropTool) tool.end(true);
-  else if (tool instanceof CropTool) return;
   else if (event.key === "b") picture.hold(true);
   else if (event.key === "y") split();
-  else if (event.key === "w") pick(tool !== "pick");
-  else if (event.key === "c") crop();
   else if (event.key === "e") exports.open(draft);
   else if (event.key === "f") picture.fit();
   else if (event.key === "z") picture.isFitted ? picture.full() : picture.fit();

@@ -5,8 +5,8 @@ import { Layer } from "./layer.js";
 
 /** Up to this zoom the whole picture is rendered at half its size. */
 const HALF = 0.5;
-/** While something moves, a picture of this share of the screen's pixels is enough. */
-const QUICK = 0.62;
+/** While something moves that must show noise as it is, a picture of this share of the screen's pixels is enough. */
+const NOISELESS = 0.5;
 const LARGEST_ZOOM = 8;
 
 /**
@@ -64,7 +64,7 @@ export class Picture extends EventTarget {
     this.#updates += 1;
     this.element.classList.add("busy");
     try {
-      await this.main.whole(this.#longest() * (quick ? QUICK : 1), quick && this.mayBeNoisy);
+      await this.main.whole(this.#longest() * (quick && !this.mayBeNoisy ? NOISELESS : 1), quick && this.mayBeNoisy);
       if (!this.main.about) return;
       this.#take(this.main.about);
       this.#settle();
@@ -137,9 +137,19 @@ export class Picture extends EventTarget {
   /** A place of the window in pixels of the picture, or `null` beside it. */
   at(event) {
     if (!this.#size) return null;
-    const box = this.element.getBoundingClientRect();
-    const place = [(event.clientX - box.left - this.#at[0]) / this.#zoom, (event.clientY - box.top - this.#at[1]) / this.#zoom];
+    const place = this.under(event);
     return place.every((v, i) => v >= 0 && v < this.#size[i]) ? place : null;
+  }
+
+  /** A place of the window in pixels of the picture, also beside it. */
+  under(event) {
+    const box = this.element.getBoundingClientRect();
+    return [(event.clientX - box.left - this.#at[0]) / this.#zoom, (event.clientY - box.top - this.#at[1]) / this.#zoom];
+  }
+
+  /** A place of the picture in pixels of the stage. */
+  onStage(place) {
+    return place.map((v, i) => this.#at[i] + v * this.#zoom);
   }
 
   #resized() {

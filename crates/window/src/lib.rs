@@ -21,6 +21,11 @@ pub use options::Options;
 mod error;
 pub use error::WindowError;
 
+mod apart;
+mod decoder;
+pub use apart::Apart;
+pub use decoder::serve_decoder;
+
 mod fault;
 mod guard;
 mod page;

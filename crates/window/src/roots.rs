@@ -106,6 +106,11 @@ impl Place {
         files::read_below(&self.root, &self.path)
     }
 
+    /// Its first bytes, at most so many.
+    pub(crate) fn read_start(&self, most: u64) -> Result<Vec<u8>, darkroot::Error> {
+        files::read_start_below(&self.root, &self.path, most)
+    }
+
     /// Whether a link lies on the way from the folder.
     pub(crate) fn check(&self) -> Result<(), Fault> {
         let mut at = self.root.clone();

@@ -7,7 +7,7 @@ use darkroot::{Cancel, Limits, Photo, ProfileStore, Scale, Settings};
 use darkroot_batch::facts::modified;
 use darkroot_colour::RgbSpace;
 use darkroot_photo::{Orientation, Picture, PictureSpace, Samples, Size};
-use image::imageops::FilterType;
+use darkroot_raw::Preview;
 
 use crate::fault::Fault;
 use crate::roots::Place;
@@ -20,6 +20,8 @@ const LONGEST: u32 = 640;
 const ENOUGH: u32 = 300;
 /// The same where it is to be there at once: the thumbnails of most cameras have 160 x 120 pixels.
 const ENOUGH_AT_ONCE: u32 = 120;
+/// Bytes of a file within which most cameras store their small pictures.
+const START: u64 = 1 << 20;
 /// Bytes of all that are kept.
 const KEPT: usize = 64 << 20;
 
@@ -61,12 +63,7 @@ impl Smalls {
         if let Some(kept) = kept.filter(|kept| at_once || !kept.coarse) {
             return Ok(kept.jpeg);
         }
-        let bytes = place.read().map_err(|e| Fault::unusable(e.to_string()))?;
-        let (jpeg, coarse) = match embedded(&bytes, if at_once { ENOUGH_AT_ONCE } else { ENOUGH }) {
-            Some((jpeg, longest)) => (jpeg, at_once && longest < ENOUGH as usize),
-            None => (developed(&bytes, place, store)?, false),
-        };
-        let small = Small { jpeg: jpeg.into(), coarse };
+        let small = made(place, store, at_once)?;
         locked(&self.0).keep(identity, small.clone());
         Ok(small.jpeg)
     }
@@ -86,39 +83,78 @@ impl Kept {
     }
 }
 
-/// The smallest embedded picture whose longest side has `enough` pixels, upright and no larger than it must be. `None` where there is none, or
-/// none that is sound. With the longest side that it has as stored.
-fn embedded(bytes: &[u8], enough: u32) -> Option<(Vec<u8>, usize)> {
-    let preview = darkroot_raw::preview_to_show(bytes, enough).ok()??;
-    let longest = preview.size.width.max(preview.size.height);
-    let fits = longest <= LONGEST as usize;
-    if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
-        return Some((preview.jpeg, longest));
-    }
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(&preview.jpeg));
-    reader.set_format(image::ImageFormat::Jpeg);
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(20_000);
-    limits.max_image_height = Some(20_000);
-    reader.limits(limits);
-    let picture = reader.decode().ok()?;
-    // Fast and coarse to twice the size, then carefully.
-    let picture = if picture.width().max(picture.height()) > 4 * LONGEST {
-        picture.thumbnail(2 * LONGEST, 2 * LONGEST)
-    } else {
-        picture
+/// The small picture of a file that is not kept: an embedded one, else what the engine makes.
+fn made(place: &Place, store: &ProfileStore, at_once: bool) -> Result<Small, Fault> {
+    let enough = if at_once { ENOUGH_AT_ONCE } else { ENOUGH };
+    let unusable = |e: darkroot::Error| Fault::unusable(e.to_string());
+    let small = |preview: Preview| {
+        let coarse = at_once && longest(&preview) < ENOUGH;
+        Some(Small { jpeg: upright(preview)?.into(), coarse })
     };
-    let picture = picture.resize(LONGEST, LONGEST, FilterType::Triangle).into_rgb8();
-    let stored = Size { width: picture.width() as usize, height: picture.height() as usize };
+    // The samples need not be read for a picture before them. A smaller one may stand behind them: decoding this one must
+    // not cost more than reading them.
+    let fits = |preview: &Preview| (enough..=3 * LONGEST).contains(&longest(preview));
+    let start = place.read_start(START).map_err(unusable)?;
+    if let Some(small) = embedded(&start, enough).filter(fits).and_then(small) {
+        return Ok(small);
+    }
+    let bytes = place.read().map_err(unusable)?;
+    match embedded(&bytes, enough).and_then(small) {
+        Some(small) => Ok(small),
+        None => Ok(Small { jpeg: developed(&bytes, place, store)?.into(), coarse: false }),
+    }
+}
+
+/// The smallest embedded picture whose longest side has `enough` pixels.
+fn embedded(bytes: &[u8], enough: u32) -> Option<Preview> {
+    darkroot_raw::preview_to_show(bytes, enough).ok()?
+}
+
+/// The longest side of an embedded picture as stored.
+fn longest(preview: &Preview) -> u32 {
+    u32::try_from(preview.size.width.max(preview.size.height)).unwrap_or(u32::MAX)
+}
+
+/// An embedded picture upright and no larger than it must be; `None` where it is not sound.
+fn upright(preview: Preview) -> Option<Vec<u8>> {
+    let fits = longest(&preview) <= LONGEST;
+    if fits && preview.orientation == Orientation::Upright && preview.jpeg.len() < 128 << 10 {
+        return Some(preview.jpeg);
+    }
+    let (stored, rgb) = darkroot_raw::preview_pixels(&preview.jpeg, &Limits::default()).ok()?;
+    let (stored, rgb) = smaller(stored, &rgb, stored.width.max(stored.height).div_ceil(LONGEST as usize));
+    if stored.area() == 0 {
+        return None;
+    }
     let size = preview.orientation.applied_to(stored);
     let mut samples = vec![0; 3 * size.area()];
-    for (x, y, pixel) in picture.enumerate_pixels() {
-        let (u, v) = preview.orientation.place(x as usize, y as usize, stored);
+    for (i, pixel) in rgb.chunks_exact(3).enumerate() {
+        let (u, v) = preview.orientation.place(i % stored.width, i / stored.width, stored);
         let at = 3 * (v * size.width + u);
-        samples[at..at + 3].copy_from_slice(&pixel.0);
+        samples[at..at + 3].copy_from_slice(pixel);
     }
     let picture = Picture { size, samples: Samples::U8(samples), space: PictureSpace::Rgb(RgbSpace::SRGB) };
-    Some((screen::bytes(&picture, Sent::Jpeg, false).ok()?.0, longest))
+    Some(screen::bytes(&picture, Sent::Jpeg, true).ok()?.0)
+}
+
+/// Each pixel the mean of `side` x `side` ones; what is left over at the right and below is left out.
+fn smaller(size: Size, rgb: &[u8], side: usize) -> (Size, Vec<u8>) {
+    let small = Size { width: size.width / side, height: size.height / side };
+    let count = u32::try_from(side * side).unwrap_or(u32::MAX);
+    let mut means = Vec::with_capacity(3 * small.area());
+    let mut sums = vec![0u32; 3 * small.width];
+    for rows in rgb.chunks_exact(3 * size.width * side).take(small.height) {
+        sums.fill(0);
+        for row in rows.chunks_exact(3 * size.width) {
+            for (sum, pixels) in sums.as_chunks_mut::<3>().0.iter_mut().zip(row.chunks_exact(3 * side)) {
+                for pixel in pixels.as_chunks::<3>().0 {
+                    (0..3).for_each(|c| sum[c] += u32::from(pixel[c]));
+                }
+            }
+        }
+        means.extend(sums.iter().map(|sum| ((sum + count / 2) / count) as u8));
+    }
+    (small, means)
 }
 
 /// What the engine makes of it with the defaults.
@@ -132,4 +168,20 @@ fn developed(bytes: &[u8], place: &Place, store: &ProfileStore) -> Result<Vec<u8
     let view = plan.whole(Scale::to_show(plan.size(), ENOUGH as usize));
     let picture = plan.render(view, &Cancel::default()).map_err(|e| fault(e.to_string()))?;
     screen::bytes(&picture, Sent::Jpeg, false).map(|(bytes, _)| bytes).map_err(|e| fault(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smaller_picture_has_the_means_of_whole_blocks() {
+        // Five columns and three rows: the last column and the last row are left over.
+        let red = [10, 20, 0, 4, 9, 30, 40, 0, 4, 9, 1, 1, 1, 1, 1];
+        let rgb: Vec<u8> = red.into_iter().flat_map(|v| [v, 100, 0]).collect();
+        let (size, means) = smaller(Size { width: 5, height: 3 }, &rgb, 2);
+        assert_eq!((size, means), (Size { width: 2, height: 1 }, vec![25, 100, 0, 2, 100, 0]));
+        let same = smaller(Size { width: 5, height: 3 }, &rgb, 1);
+        assert_eq!(same, (Size { width: 5, height: 3 }, rgb));
+    }
 }

@@ -24,7 +24,7 @@ const ARROWS: [(&str, &[&str]); 17] = [
     ("darkroot", &["calibrate", "chart", "colour", "develop", "encode", "lens", "photo", "profile", "raw"]),
     ("batch", &["colour", "darkroot", "develop", "encode", "photo", "profile", "raw", "sandbox"]),
     // It shows pictures, charts and profiles, and encodes views for the browser.
-    ("window", &["batch", "chart", "colour", "darkroot", "develop", "encode", "photo", "raw"]),
+    ("window", &["batch", "chart", "colour", "darkroot", "develop", "encode", "photo", "raw", "sandbox"]),
     // Options of the program are types of `develop` and `raw`; it shows profiles.
     ("cli", &["batch", "colour", "darkroot", "develop", "profile", "raw", "sandbox", "window"]),
     // Bindings: they take and show the nouns of all of these.

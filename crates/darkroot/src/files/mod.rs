@@ -178,6 +178,19 @@ pub fn read_below(root: &Path, path: &Path) -> Result<Vec<u8>, Error> {
     attempt().map_err(|e| Error::read(path, e))
 }
 
+/// The first bytes of an input file below a folder, as [`read_below`]: at most so many.
+///
+/// # Errors
+/// As [`read_below`].
+pub fn read_start_below(root: &Path, path: &Path, most: u64) -> Result<Vec<u8>, Error> {
+    let attempt = || {
+        let mut bytes = Vec::new();
+        system::read_below(root, path)?.take(most).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    attempt().map_err(|e| Error::read(path, e))
+}
+
 /// Removes unfinished outputs that a run left in a folder below another, and the folder if it is empty then.
 ///
 /// # Errors

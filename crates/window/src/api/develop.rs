@@ -41,8 +41,8 @@ pub(crate) struct Wanted {
     /// Whether all of the frame is shown, whatever the crop, to choose one.
     #[serde(default)]
     uncropped: bool,
-    /// Whether another is to follow at once: where that saves time, noise is left in, and in the first one of a file all that
-    /// would have to be looked for in its samples; the JPEG is smaller.
+    /// Whether another is to follow at once: where that saves time, the picture is coarser, noise is left in, and in the first
+    /// one of a file all that would have to be looked for in its samples; the JPEG is smaller.
     #[serde(default)]
     quick: bool,
 }
@@ -61,6 +61,10 @@ struct About {
     notes: Vec<String>,
     milliseconds: f64,
 }
+
+/// What share of the pixels along a side is enough for the first picture of a file, and for one while a setting moves.
+const AT_ONCE: f64 = 0.62;
+const MOVING: f64 = 0.5;
 
 /// The largest view, pixels.
 const LARGEST: usize = 40_000_000;
@@ -147,22 +151,22 @@ fn plan(shared: &Shared, open: &Open, settings: &Settings) -> Result<Plan, Fault
 
 /// What a view is rendered by. A quick one is coarse, unless what is kept of it serves.
 fn planned(shared: &Shared, open: &Open, settings: Settings, wanted: &Wanted) -> Result<(Plan, View), Fault> {
-    let by = |settings: &Settings| {
+    let by = |settings: &Settings, share: f64| {
         let plan = plan(shared, open, settings)?;
-        let view = view(&plan, wanted)?;
+        let view = view(&plan, wanted, share)?;
         Ok::<_, Fault>((plan, view))
     };
     if !wanted.quick {
-        return by(&settings);
+        return by(&settings, 1.0);
     }
     if open.kept.is_empty() {
-        return by(&screen::at_once(settings));
+        return by(&screen::at_once(settings), AT_ONCE);
     }
-    let (whole, of_whole) = by(&settings)?;
+    let (whole, of_whole) = by(&settings, 1.0)?;
     if whole.is_kept(of_whole, &open.kept) {
         return Ok((whole, of_whole));
     }
-    by(&screen::with_noise(settings))
+    by(&screen::with_noise(settings), MOVING)
 }
 
 fn uncropped(mut settings: Settings, yes: bool) -> Settings {
@@ -172,10 +176,13 @@ fn uncropped(mut settings: Settings, yes: bool) -> Settings {
     settings
 }
 
-fn view(plan: &Plan, wanted: &Wanted) -> Result<View, Fault> {
+/// The view that is wanted; of a whole one, that share of the pixels along a side is enough.
+fn view(plan: &Plan, wanted: &Wanted, share: f64) -> Result<View, Fault> {
     let view = match (wanted.rect, wanted.longest) {
         (Some([x, y, width, height]), _) => View::of(Rect { x, y, width, height }),
-        (None, Some(longest)) => plan.whole(Scale::to_show(plan.size(), longest)),
+        (None, Some(longest)) => {
+            plan.whole(Scale::to_show(plan.size(), (share * longest as f64).ceil() as usize))
+        }
         (None, None) => plan.whole(Scale::FULL),
     };
     let within = Rect::full(plan.size_at(view.scale)).intersection(view.rect);
@@ -210,6 +217,7 @@ pub(crate) async fn frame(
         let all = uncropped(settings.clone(), true);
         let mut canvas = all.clone();
         canvas.recipe.geometry.straighten = 0.0;
+        canvas.recipe.geometry.auto_straighten = false;
         canvas.recipe.geometry.perspective = None;
         let (canvas, shown) = (size(&canvas)?, size(&all)?);
         let middle = |inner: Size| {
