@@ -141,6 +141,8 @@ impl Capture {
             && within(self.default_crop, self.active_area)
             && self.user_crop.is_none_or(|crop| within(crop, self.default_crop))
             && block.is_some_and(|block| block > 0 && block == black.values.len())
+            && self.mosaic_corrections.iter().chain(&self.picture_corrections).all(Correction::is_sound)
+            && self.maker_lens.as_ref().is_none_or(MakerLens::is_sound)
             && self.local_tone.as_ref().is_none_or(|map| map.is_sound())
     }
 

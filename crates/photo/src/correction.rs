@@ -42,6 +42,29 @@ pub enum Correction {
     Warp(Warp),
 }
 
+impl Correction {
+    /// Whether its parts fit together. Of what comes from another process that is not to be taken for granted.
+    pub fn is_sound(&self) -> bool {
+        match self {
+            Self::Table(area, _)
+            | Self::Polynomial(area, _)
+            | Self::RowDelta(area, _)
+            | Self::ColumnDelta(area, _)
+            | Self::RowScale(area, _)
+            | Self::ColumnScale(area, _) => area.is_sound(),
+            Self::Gain(area, map) => area.is_sound() && map.is_sound(),
+            Self::Vignette(_) => true,
+            Self::Warp(warp) => !warp.planes.is_empty(),
+        }
+    }
+}
+
+impl Area {
+    fn is_sound(&self) -> bool {
+        self.row_pitch > 0 && self.column_pitch > 0
+    }
+}
+
 /// A coarse map of gains over the picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GainMap {
@@ -57,6 +80,13 @@ pub struct GainMap {
     pub horizontal: (f64, f64),
     /// `rows * columns * planes` gains.
     pub gains: Vec<f32>,
+}
+
+impl GainMap {
+    fn is_sound(&self) -> bool {
+        let count = self.rows.checked_mul(self.columns).and_then(|points| points.checked_mul(self.planes));
+        count.is_some_and(|count| count > 0 && count == self.gains.len())
+    }
 }
 
 /// Gain 1 + k0 r^2 + k1 r^4 + ... + k4 r^10, r = distance from the centre over that of the farthest corner.

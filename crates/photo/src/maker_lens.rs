@@ -1,12 +1,16 @@
 //! What a camera's own notes say of the lens. Radii are distances from the middle of what the maker shows, in halves of its diagonal.
 
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
 /// Steps that a function of the radius is kept in, and the last radius; beyond it the function stays as it is there.
 const STEPS: usize = 320;
 const LAST: f64 = 1.25;
 
 /// A function of the radius, between steps by straight lines. Over 1/256 of half a diagonal these are right to a hundredth of a
 /// pixel for any lens.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Radial {
     values: Vec<f64>,
 }
@@ -15,6 +19,11 @@ impl Radial {
     /// Keeps a function.
     pub fn of(function: impl Fn(f64) -> f64) -> Self {
         Self { values: (0..=STEPS).map(|i| function(radius(i))).collect() }
+    }
+
+    /// Whether it has as many values as it must.
+    pub fn is_sound(&self) -> bool {
+        self.values.len() == STEPS + 1
     }
 
     /// The value at a radius.
@@ -43,20 +52,25 @@ fn radius(step: usize) -> f64 {
 }
 
 /// What a lens did to a picture, as its camera says.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MakerLens {
     /// The maker.
-    pub maker: &'static str,
+    pub maker: Cow<'static, str>,
     /// For each of red, green and blue: by what the radius of a place in the corrected picture is multiplied to give that in the
     /// picture as taken.
     pub places: [Radial; 3],
     /// By what light is multiplied, by the radius in the picture as taken; `None` where that is not known.
     pub gain: Option<Radial>,
     /// What else the note says of the lens and is not used, with the reason.
-    pub left: Option<&'static str>,
+    pub left: Option<Cow<'static, str>>,
 }
 
 impl MakerLens {
+    /// Whether its parts are whole. Of what comes from another process that is not to be taken for granted.
+    pub fn is_sound(&self) -> bool {
+        self.places.iter().chain(&self.gain).all(Radial::is_sound)
+    }
+
     /// Whether places move.
     pub fn has_distortion(&self) -> bool {
         !self.places[1].is_within(1.0 - NOTHING, 1.0 + NOTHING)
@@ -127,7 +141,7 @@ mod tests {
     fn parts_are_named_and_can_be_left_out() {
         let flat = || Radial::of(|_| 1.0);
         let lens = MakerLens {
-            maker: "Sony",
+            maker: "Sony".into(),
             places: [Radial::of(|_| 1.001), flat(), flat()],
             gain: Some(flat()),
             left: None,

@@ -86,5 +86,5 @@ fn not_applied(capture: &Capture) -> Option<String> {
 }
 
 fn left(told: &MakerLens) -> String {
-    told.left.map_or_else(String::new, |left| format!("; {left}"))
+    told.left.as_ref().map_or_else(String::new, |left| format!("; {left}"))
 }

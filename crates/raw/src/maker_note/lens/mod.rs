@@ -87,7 +87,7 @@ fn sound(maker: &'static str, said: Said) -> Result<Option<MakerLens>, String> {
     }
     let flat = || Radial::of(|_| 1.0);
     let places = places.unwrap_or_else(|| [flat(), flat(), flat()]);
-    let lens = MakerLens { maker, places, gain, left };
+    let lens = MakerLens { maker: maker.into(), places, gain, left: left.map(Into::into) };
     Ok((lens.has_distortion() || lens.has_fringes() || lens.gain.is_some()).then_some(lens))
 }
 
