@@ -179,3 +179,59 @@ impl Capture {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correction::{Area, GainMap};
+    use crate::{Layout, MakerLens, Mosaic, Radial, Size};
+
+    #[test]
+    fn parts_that_do_not_fit_together_are_seen() {
+        let size = Size { width: 4, height: 2 };
+        let counts = Counts::U16(Mosaic { size, layout: Layout::Monochrome, samples: vec![0; 8] });
+        let sound = Capture::bare(counts);
+        assert!(sound.is_sound());
+        let unsound = |change: fn(&mut Capture)| {
+            let mut capture = sound.clone();
+            change(&mut capture);
+            !capture.is_sound()
+        };
+        let area = |pitch: usize| Area {
+            rect: Rect { x: 0, y: 0, width: 4, height: 2 },
+            plane: 0,
+            planes: 1,
+            row_pitch: 1,
+            column_pitch: pitch,
+        };
+        assert!(unsound(|c| c.active_area.width = 5));
+        assert!(unsound(|c| c.black.values.clear()));
+        assert!(unsound(|c| match &mut c.counts {
+            Counts::U16(mosaic) => mosaic.samples.truncate(7),
+            Counts::F32(mosaic) => mosaic.samples.truncate(7),
+        }));
+        let with =
+            |correction: Correction| Capture { picture_corrections: vec![correction], ..sound.clone() };
+        let map = |gains: usize| GainMap {
+            rows: 2,
+            columns: 2,
+            planes: 1,
+            vertical: (0.0, 1.0),
+            horizontal: (0.0, 1.0),
+            gains: vec![1.0; gains],
+        };
+        assert!(with(Correction::Gain(area(1), map(4))).is_sound());
+        assert!(!with(Correction::Gain(area(1), map(3))).is_sound());
+        assert!(!with(Correction::Polynomial(area(0), vec![1.0])).is_sound());
+        let short: Radial = serde_json::from_str(r#"{"values":[1.0]}"#).unwrap();
+        let flat = || Radial::of(|_| 1.0);
+        let lens = |third: Radial| MakerLens {
+            maker: "Sony".into(),
+            places: [flat(), flat(), third],
+            gain: None,
+            left: None,
+        };
+        let with = |lens: MakerLens| Capture { maker_lens: Some(lens), ..sound.clone() };
+        assert!(with(lens(flat())).is_sound() && !with(lens(short)).is_sound());
+    }
+}
