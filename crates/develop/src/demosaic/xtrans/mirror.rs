@@ -121,13 +121,12 @@ impl Folded {
     /// `samples` are those from the first pixel's on; `taps` says where in them each of [`reached`] is.
     #[inline(always)]
     pub(super) fn fill(&mut self, samples: &[f32], taps: &[usize], site: &Mirrored) {
-        let at = |number: usize| -> Lanes { lanes(&samples[taps[number]..]) };
         let (line, rest) = self.sums.split_at_mut(site.on_line.len());
         for (out, &number) in line.iter_mut().zip(&site.on_line) {
-            *out = at(number);
+            *out = lanes(&samples[taps[number]..]);
         }
         for ((sum, difference), &[a, b]) in rest.iter_mut().zip(&mut self.differences).zip(&site.beside) {
-            let (a, b) = (at(a), at(b));
+            let (a, b) = (lanes(&samples[taps[a]..]), lanes(&samples[taps[b]..]));
             for l in 0..LANES {
                 sum[l] = a[l] + b[l];
                 difference[l] = a[l] - b[l];
@@ -202,10 +201,12 @@ impl Mirrored {
                 let [i, j, k, l] = differences[0].sum(&folded.differences);
                 let [m, n, o, p] = differences[1].sum(&folded.differences);
                 let pairs = [(a, i), (b, j), (c, k), (d, l), (e, m), (f, n), (g, o), (h, p)];
-                [
-                    (std::array::from_fn(|n| plus(pairs[n].0, pairs[n].1)), &MODEL_BY_MODEL),
-                    (std::array::from_fn(|n| minus(pairs[n].0, pairs[n].1)), &self.image),
-                ]
+                let (mut first, mut second) = ([[0.0; LANES]; MODELS], [[0.0; LANES]; MODELS]);
+                for (n, (sum, difference)) in pairs.into_iter().enumerate() {
+                    first[n] = plus(sum, difference);
+                    second[n] = minus(sum, difference);
+                }
+                [(first, &MODEL_BY_MODEL), (second, &self.image)]
             }
         }
     }
@@ -217,12 +218,20 @@ const KIND: usize = MODELS / 2;
 
 #[inline(always)]
 fn plus(a: Lanes, b: Lanes) -> Lanes {
-    std::array::from_fn(|l| a[l] + b[l])
+    let mut sum = a;
+    for l in 0..LANES {
+        sum[l] += b[l];
+    }
+    sum
 }
 
 #[inline(always)]
 fn minus(a: Lanes, b: Lanes) -> Lanes {
-    std::array::from_fn(|l| a[l] - b[l])
+    let mut difference = a;
+    for l in 0..LANES {
+        difference[l] -= b[l];
+    }
+    difference
 }
 
 /// Which samples are folded onto which.

@@ -16,7 +16,7 @@ mod sites;
 #[cfg(test)]
 mod slow;
 
-use darkroot_colour::simd::vectorised_widely;
+use darkroot_colour::simd::vectorised;
 
 use super::signed_square;
 use mirror::{Folded, Mirrored, Predictions, site_at};
@@ -36,7 +36,7 @@ const TINY: f32 = 1e-30;
 
 /// Demosaics the inner part of an X-Trans mosaic whose array begins at `phase`.
 pub fn demosaic(mosaic: &Mosaic<f32>, phase: (usize, usize), border: usize, picture: &mut Rgb<CameraSpace>) {
-    vectorised_widely(
+    vectorised(
         #[inline(always)]
         || run(mosaic, phase, border, picture),
     );
@@ -112,7 +112,9 @@ impl Around<'_> {
                 let (error, models) = site.error(&folded);
                 for (error, model) in error.iter().zip(models) {
                     let at = model * parts.row() + parts.index(k, 0) + j;
-                    errors[at..at + LANES].copy_from_slice(&error.map(|e| e * e));
+                    for (out, e) in errors[at..at + LANES].iter_mut().zip(error) {
+                        *out = e * e;
+                    }
                 }
             }
         }
@@ -126,16 +128,22 @@ impl Around<'_> {
         for (k, (taps, site)) in self.taps.iter().zip(self.sites).enumerate() {
             for j in (0..parts.pixels).step_by(LANES) {
                 let at = parts.index(k, 0) + j;
-                let mut put = |c: usize, root: Lanes| {
-                    colours[c][at..at + LANES].copy_from_slice(&root.map(signed_square));
-                };
                 folded.fill(&self.samples[j..], taps, site);
                 for (i, predictions) in site.missing(&folded).iter().enumerate() {
-                    put((site.own + 1 + i) % 3, join(predictions, &shares[at..], parts.row()));
+                    let root = join(predictions, &shares[at..], parts.row());
+                    squared(&mut colours[(site.own + 1 + i) % 3][at..], &root);
                 }
-                put(site.own, lanes(&self.samples[REACH * parts.row() + at..]));
+                squared(&mut colours[site.own][at..], &lanes(&self.samples[REACH * parts.row() + at..]));
             }
         }
+    }
+}
+
+/// Light from its roots.
+#[inline(always)]
+fn squared(light: &mut [f32], roots: &Lanes) {
+    for (light, root) in light.iter_mut().zip(roots) {
+        *light = signed_square(*root);
     }
 }
 

@@ -10,8 +10,9 @@ pub(super) type Lanes = [f32; LANES];
 /// The next pixels of a row that is taken apart.
 #[inline(always)]
 pub(super) fn lanes(pixels: &[f32]) -> Lanes {
-    let pixels = &pixels[..LANES];
-    std::array::from_fn(|l| pixels[l])
+    let mut lanes = [0.0; LANES];
+    lanes.copy_from_slice(&pixels[..LANES]);
+    lanes
 }
 
 /// A row of pixels taken apart by columns of the array: part `k` has columns `k`, `k + 6`, `k + 12` and so on,
