@@ -106,7 +106,17 @@ pub(super) const LENS_NAME: Setting = Setting {
     help: "Lens to look up with --lens lensfun and maker, where the file names none, or only its numbers; auto: what the file says",
     changes: Changes::Picture,
     set: |to, text| {
-        to.recipe.lens_name = (text != AUTO && !text.trim().is_empty()).then(|| text.trim().to_owned());
+        to.recipe.lens_name = match text.trim() {
+            "" => {
+                return Err(NotAValue::plain(
+                    text,
+                    "name of a lens",
+                    "auto, or the name of a lens as lensfun has it",
+                ));
+            }
+            AUTO => None,
+            name => Some(name.to_owned()),
+        };
         Ok(())
     },
 };
