@@ -283,9 +283,12 @@ fn range_of(rows: &[&[f32; WIDE]; GROUP], range: &mut [f32; 2 * WIDE]) {
     for half in [0, RUN] {
         let (mut low, mut high) = ([f32::MAX; RUN], [f32::MIN; RUN]);
         for row in rows {
+            // As an array of its own, or compilers take most of it one by one.
+            let mut line = [0f32; RUN];
+            line.copy_from_slice(&row[half..][..RUN]);
             for i in 0..RUN {
-                low[i] = lesser(row[half + i], low[i]);
-                high[i] = greater(row[half + i], high[i]);
+                low[i] = lesser(line[i], low[i]);
+                high[i] = greater(line[i], high[i]);
             }
         }
         range[half..][..RUN].copy_from_slice(&low);
