@@ -30,7 +30,7 @@ pub(crate) fn notes(tiff: &Directories<'_>) -> Vec<String> {
     let mut others: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for directory in &tiff.all {
         let Some(what) = directory.number(tiff, tag::NEW_SUBFILE_TYPE).and_then(kind) else { continue };
-        let name = directory.entries.iter().find(|e| e.tag == SEMANTIC_NAME);
+        let name = directory.entry(SEMANTIC_NAME);
         let name = name
             .and_then(|e| tiff.value(e, MAX_NAME))
             .map(|bytes| String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned());

@@ -91,7 +91,7 @@ fn strips_touch(tiff: &Directories<'_>, header: &Capture) -> bool {
     let row_bits = (size.width * header.counts.layout().planes() * usize::from(header.source.bits)) as u64;
     tiff.all.iter().all(|directory| {
         let values = |tag: u16| {
-            let entry = directory.entries.iter().find(|e| e.tag == tag);
+            let entry = directory.entry(tag);
             entry.map(|e| tiff.integers(e, MAX_STRIPS)).unwrap_or_default()
         };
         let (offsets, counts) = (values(STRIP_OFFSETS), values(STRIP_BYTE_COUNTS));

@@ -17,7 +17,7 @@ const COMPRESSION_IN_FACTS: usize = 10;
 /// The note's directories; `None` where there is none.
 fn note<'a>(tiff: &Directories<'a>) -> Option<Directories<'a>> {
     let exif = tiff.below(tiff.all.first()?, EXIF_IFD)?;
-    inside(tiff.value(exif.entries.iter().find(|e| e.tag == MAKER_NOTE)?, usize::MAX)?)
+    inside(tiff.value(exif.entry(MAKER_NOTE)?, usize::MAX)?)
 }
 
 /// The directories inside of a note of this type; `None` for any other.
@@ -53,7 +53,7 @@ pub(crate) fn refuse_high_efficiency(tiff: &Directories<'_>) -> Result<(), Error
 /// What the two places of the note say, where they are.
 fn compressions(note: &Directories<'_>) -> [Option<u64>; 2] {
     let Some(directory) = note.all.first() else { return [None; 2] };
-    let facts = directory.entries.iter().find(|e| e.tag == FACTS).and_then(|e| note.value(e, 1 << 16));
+    let facts = directory.entry(FACTS).and_then(|e| note.value(e, 1 << 16));
     let in_facts = facts.and_then(|f| f.get(COMPRESSION_IN_FACTS..COMPRESSION_IN_FACTS + 2));
     let in_facts = in_facts.and_then(|two| note.shorts(two).first().copied());
     [directory.number(note, COMPRESSION), in_facts.map(u64::from)]

@@ -90,7 +90,7 @@ pub(crate) fn check(tiff: &Directories<'_>, limits: &Limits) -> Result<(), Error
 /// Offset and length of each strip or tile.
 fn pieces(tiff: &Directories<'_>, directory: &Directory) -> Vec<(usize, usize)> {
     let all = |tag| {
-        let entry = directory.entries.iter().find(|e| e.tag == tag);
+        let entry = directory.entry(tag);
         entry.map_or_else(Vec::new, |e| tiff.integers(e, usize::MAX))
     };
     let (mut offsets, mut lengths) = (all(tag::TILE_OFFSETS), all(tag::TILE_BYTE_COUNTS));

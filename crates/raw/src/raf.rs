@@ -65,7 +65,7 @@ impl<'a> Raf<'a> {
     pub(crate) fn note(self) -> Option<(Directories<'a>, Directory)> {
         let tiff = Directories::walk(exif::exif_of_jpeg(self.section(JPEG)?)?).ok().flatten()?;
         let exif = tiff.below(tiff.all.first()?, EXIF_IFD)?;
-        let entry = exif.entries.iter().find(|entry| entry.tag == MAKER_NOTE)?;
+        let entry = exif.entry(MAKER_NOTE)?;
         let note = tiff.value(entry, usize::MAX).filter(|note| note.starts_with(b"FUJIFILM"))?;
         let at = u32::from_le_bytes(note.get(8..12)?.try_into().ok()?) as usize;
         Directories::one(note, true, at)

@@ -43,10 +43,14 @@ impl Entry {
 }
 
 impl Directory {
+    /// The first entry with this tag.
+    pub(crate) fn entry(&self, tag: u16) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.tag == tag)
+    }
+
     /// The first integer of the entry with this tag.
     pub(crate) fn number(&self, tiff: &Directories<'_>, tag: u16) -> Option<u64> {
-        let entry = self.entries.iter().find(|e| e.tag == tag)?;
-        tiff.integers(entry, 1).first().copied()
+        tiff.integers(self.entry(tag)?, 1).first().copied()
     }
 }
 
@@ -243,7 +247,7 @@ impl<'a> Directories<'a> {
 
     /// Whether any directory has the tag.
     pub(crate) fn has(&self, tag: u16) -> bool {
-        self.all.iter().any(|d| d.entries.iter().any(|e| e.tag == tag))
+        self.all.iter().any(|d| d.entry(tag).is_some())
     }
 
     fn array<const N: usize>(&self, at: usize) -> Option<[u8; N]> {

@@ -68,7 +68,7 @@ fn chosen(tiff: &Directories<'_>, shown: Rect) -> Option<Rect> {
 const SLACK: usize = 32;
 
 fn canon(tiff: &Directories<'_>, directory: &Directory) -> Option<[usize; 4]> {
-    let entry = directory.entries.iter().find(|entry| entry.tag == CANON)?;
+    let entry = directory.entry(CANON)?;
     let [_, width, height, left, top] = tiff.longs(tiff.value(entry, 20)?)[..] else { return None };
     Some([left, top, width, height].map(|v| v as usize))
 }

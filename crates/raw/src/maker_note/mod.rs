@@ -43,13 +43,13 @@ pub(crate) fn complete(metadata: &mut Metadata, tiff: &Directories<'_>) {
 fn notes<'a>(tiff: &Directories<'a>) -> Vec<Note<'a>> {
     let Some(image) = tiff.all.first() else { return Vec::new() };
     let exif = tiff.below(image, EXIF_IFD).unwrap_or_default();
-    let entry = exif.entries.iter().find(|entry| entry.tag == MAKER_NOTE);
+    let entry = exif.entry(MAKER_NOTE);
     let own = entry.map(|entry| Note {
         bytes: tiff.bytes(),
         little_endian: tiff.is_little_endian(),
         start: entry.place(),
     });
-    let kept = image.entries.iter().find(|entry| entry.tag == PRIVATE_DATA).and_then(|entry| {
+    let kept = image.entry(PRIVATE_DATA).and_then(|entry| {
         let data = tiff.value(entry, usize::MAX)?;
         kept_note(tiff.bytes(), entry.place(), data)
     });
@@ -125,7 +125,7 @@ fn directory<'a>(note: &Note<'a>, make: &str) -> Option<(Directories<'a>, Direct
 
 /// The maker that the file names, in small letters.
 fn maker(tiff: &Directories<'_>) -> Option<String> {
-    let make = tiff.all.first()?.entries.iter().find(|entry| entry.tag == tag::MAKE)?;
+    let make = tiff.all.first()?.entry(tag::MAKE)?;
     Some(String::from_utf8_lossy(tiff.value(make, 64)?).to_lowercase())
 }
 
@@ -190,7 +190,7 @@ fn olympus(tiff: &Directories<'_>, directory: &Directory) -> Vec<(u16, Value)> {
 
 /// A directory below that of Olympus' note. In older cameras it is the value itself.
 fn below_olympus(tiff: &Directories<'_>, directory: &Directory, number: u16) -> Option<Directory> {
-    let entry = directory.entries.iter().find(|entry| entry.tag == number)?;
+    let entry = directory.entry(number)?;
     if entry.kind == 7 { tiff.directory_at(entry.place()) } else { tiff.below(directory, number) }
 }
 

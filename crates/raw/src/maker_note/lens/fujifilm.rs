@@ -10,7 +10,7 @@
 use darkroot_photo::Radial;
 
 use super::curve::Curve;
-use super::{Read, Said, entry, numbers};
+use super::{Read, Said, numbers};
 use crate::raf::Raf;
 use crate::tiff::{Directories, Directory};
 
@@ -91,7 +91,7 @@ fn columns(
     columns: usize,
     what: &str,
 ) -> Result<Option<Columns>, String> {
-    let Some(entry) = entry(directory, number) else { return Ok(None) };
+    let Some(entry) = directory.entry(number) else { return Ok(None) };
     let all = numbers(tiff, entry)
         .ok_or_else(|| format!("its {what} is not the list of fractions that it should be"))?;
     let knots = match (columns, all.len()) {

@@ -17,7 +17,7 @@ use darkroot_photo::{MakerLens, Radial};
 
 use super::{is_olympus, maker};
 use crate::raf::Raf;
-use crate::tiff::{Directories, Directory, Entry};
+use crate::tiff::{Directories, Entry};
 
 /// By what places move at most, as a factor on their radius.
 const LEAST_PLACE: f64 = 0.5;
@@ -109,9 +109,4 @@ fn numbers(tiff: &Directories<'_>, entry: &Entry) -> Option<Vec<f64>> {
 
 fn fractions(longs: &[u32], number: impl Fn(u32) -> f64) -> Vec<f64> {
     longs.as_chunks().0.iter().map(|&[above, below]| number(above) / number(below)).collect()
-}
-
-/// The entry of a directory with this number.
-fn entry(directory: &Directory, number: u16) -> Option<&Entry> {
-    directory.entries.iter().find(|entry| entry.tag == number)
 }

@@ -7,7 +7,7 @@
 use darkroot_photo::Radial;
 
 use super::super::{below_olympus, directory, notes};
-use super::{Read, Said, entry, numbers};
+use super::{Read, Said, numbers};
 
 const PROCESSING: u16 = 0x2040;
 /// Of older cameras, and of newer ones, which shows a little less.
@@ -18,8 +18,8 @@ pub(super) fn said(tiff: &crate::tiff::Directories<'_>, make: &str) -> Read {
     for note in notes(tiff) {
         let Some((tiff, own)) = directory(&note, make) else { continue };
         let Some(processing) = below_olympus(&tiff, &own, PROCESSING) else { continue };
-        let distortion = DISTORTION.into_iter().find_map(|number| entry(&processing, number));
-        let fringes = entry(&processing, FRINGES);
+        let distortion = DISTORTION.into_iter().find_map(|number| processing.entry(number));
+        let fringes = processing.entry(FRINGES);
         if distortion.is_none() && fringes.is_none() {
             continue;
         }

@@ -8,7 +8,7 @@
 use darkroot_photo::Radial;
 
 use super::curve::Curve;
-use super::{Read, Said, entry, numbers};
+use super::{Read, Said, numbers};
 use crate::tiff::{Directories, Directory};
 
 const VIGNETTING: u16 = 0x7032;
@@ -16,7 +16,7 @@ const FRINGES: u16 = 0x7035;
 const DISTORTION: u16 = 0x7037;
 
 pub(super) fn said(tiff: &Directories<'_>) -> Read {
-    let has = |directory: &&Directory| entry(directory, DISTORTION).is_some();
+    let has = |directory: &&Directory| directory.entry(DISTORTION).is_some();
     let Some(directory) = tiff.all.iter().find(has) else { return Ok(None) };
     let distortion = list(tiff, directory, DISTORTION, "distortion")?.unwrap_or_default();
     let fringes = list(tiff, directory, FRINGES, "lateral chromatic aberration")?.unwrap_or_default();
@@ -54,7 +54,7 @@ fn list(
     number: u16,
     what: &str,
 ) -> Result<Option<Vec<f64>>, String> {
-    let Some(entry) = entry(directory, number) else { return Ok(None) };
+    let Some(entry) = directory.entry(number) else { return Ok(None) };
     let all = numbers(tiff, entry)
         .ok_or_else(|| format!("its {what} is not the list of numbers that it should be"))?;
     let Some((&count, values)) = all.split_first() else { return Ok(None) };
