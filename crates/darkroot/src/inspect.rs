@@ -213,7 +213,7 @@ fn of_lens(lens: &MakerLens) -> String {
          where that is asked for{}",
         lens.maker,
         lens.parts(),
-        lens.left.as_ref().map_or_else(String::new, |left| format!("; {left}"))
+        lens.and_left()
     )
 }
 

@@ -104,6 +104,11 @@ impl MakerLens {
         }
     }
 
+    /// What is left, as the end of a sentence; nothing where nothing is.
+    pub fn and_left(&self) -> String {
+        self.left.as_ref().map_or_else(String::new, |left| format!("; {left}"))
+    }
+
     /// The same without what is not wanted.
     #[must_use]
     pub fn without(mut self, fringes: bool, vignetting: bool) -> Self {

@@ -107,13 +107,7 @@ pub(super) const LENS_NAME: Setting = Setting {
     changes: Changes::Picture,
     set: |to, text| {
         to.recipe.lens_name = match text.trim() {
-            "" => {
-                return Err(NotAValue::plain(
-                    text,
-                    "name of a lens",
-                    "auto, or the name of a lens as lensfun has it",
-                ));
-            }
+            "" => return Err(NotAValue::of(&LENS_NAME, text)),
             AUTO => None,
             name => Some(name.to_owned()),
         };

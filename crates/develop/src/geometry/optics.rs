@@ -1,7 +1,7 @@
 //! What is done about the lens, by whose word: the file's own correction, else the maker's note where that is asked for, else
 //! lensfun's database.
 
-use darkroot_photo::{Capture, Correction, MakerLens, Rect};
+use darkroot_photo::{Capture, Correction, Rect};
 
 use super::lens::{LensWarp, half_diagonal};
 use super::vignetting::Vignetting;
@@ -48,7 +48,7 @@ pub(super) fn optics(capture: &Capture, asked: &Geometry, measuring: bool, shown
                 "the lens is corrected as {}'s note says ({}); that could not be checked against the camera's own pictures{}",
                 told.maker,
                 told.parts(),
-                left(&told)
+                told.and_left()
             );
             Optics {
                 warps: LensWarp::told(&told, shown).into_iter().collect(),
@@ -83,8 +83,4 @@ fn not_applied(capture: &Capture) -> Option<String> {
             told.parts()
         )
     })
-}
-
-fn left(told: &MakerLens) -> String {
-    told.left.as_ref().map_or_else(String::new, |left| format!("; {left}"))
 }
